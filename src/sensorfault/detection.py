@@ -1,0 +1,36 @@
+"""What a fitted monitor found in a log."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int8
+
+from sensorfault.events import Event
+from sensorfault.logs.table import Log
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One test over time: its score and limit, NaN where it had nothing to test. `channel` is None for a joint test."""
+
+    name: str
+    channel: str | None
+    score: Float[np.ndarray, " T"]
+    limit: Float[np.ndarray, " T"]
+
+
+@dataclass(frozen=True)
+class Detection:
+    """Verdicts (OK 0, UNKNOWN 1, FAULT 2) on every tick of `log`, the tests behind them, and the fault events.
+
+    `repaired` is `log.value` with stand-ins where a channel was rebuilt, NaN where there was nothing to say [SI].
+    """
+
+    log: Log
+    method: str
+    channel: Int8[np.ndarray, "T C"]
+    sensor: Int8[np.ndarray, "T S"]
+    sample: Int8[np.ndarray, " T"]
+    repaired: Float[np.ndarray, "T C"]
+    traces: tuple[Trace, ...]
+    events: tuple[Event, ...]

@@ -1,0 +1,133 @@
+"""A log: what every sensor said, on one clock."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+import polars as pl
+from jaxtyping import Bool, Float
+
+from sensorfault.logs.units import from_si
+
+
+class LogError(ValueError):
+    """A log, a vehicle file or a model that cannot be used. One sentence: what is wrong, where, and what to do."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One number of one sensor. `unit` is what a person reads; values in a Log are SI."""
+
+    name: str
+    sensor: str
+    unit: str = ""
+
+    @property
+    def path(self) -> str:
+        """`sensor.channel`, unique in a log."""
+        return f"{self.sensor}.{self.name}"
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """A device that delivers its channels together.
+
+    `period_s`: the usual time between two new measurements. `held`: the file repeats the last measurement until the
+    next (zero-order hold), so a repeated row says nothing. `watch`: whether a method may judge its values (a latitude
+    is not a stationary signal; its silence is still noticed).
+    """
+
+    name: str
+    period_s: float
+    held: bool = False
+    watch: bool = True
+
+
+@dataclass(frozen=True)
+class Log:
+    """T ticks of one clock, C channels.
+
+    `time` [s] rises strictly and starts at 0 at the first row read (`epoch_s`, Unix time, if the file knew it).
+    `value` is SI, NaN where nothing arrived. `fresh` marks new measurements, not held ones: fresh implies a value.
+    `notes`: what reading found that a person should know (clock faults, held rows, guesses), one sentence each.
+    """
+
+    time: Float[np.ndarray, " T"]
+    value: Float[np.ndarray, "T C"]
+    fresh: Bool[np.ndarray, "T C"]
+    channels: tuple[Channel, ...]
+    sensors: tuple[Sensor, ...]
+    name: str = "log"
+    notes: tuple[str, ...] = ()
+    epoch_s: float | None = None
+
+    def __post_init__(self) -> None:
+        rows, width = self.value.shape
+        if self.time.shape != (rows,) or self.fresh.shape != (rows, width) or len(self.channels) != width:
+            raise LogError(
+                f"{self.name}: {rows} rows of {width} values do not go with {self.time.size} times, "
+                f"{self.fresh.shape} fresh marks and {len(self.channels)} channels; give one of each a row or column."
+            )
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def duration_s(self) -> float:
+        """From the first tick to the last [s]."""
+        return float(self.time[-1] - self.time[0]) if len(self) else 0.0
+
+    @property
+    def period_s(self) -> float:
+        """The usual time between two ticks [s]."""
+        return float(np.median(np.diff(self.time))) if len(self) > 1 else float("nan")
+
+    def index(self, path: str) -> int:
+        """Column of the channel `sensor.channel`; a bare channel name will do where it is unique.
+
+        Raises:
+            LogError: no such channel, or several.
+        """
+        found = [i for i, c in enumerate(self.channels) if path in (c.path, c.name)]
+        exact = [i for i, c in enumerate(self.channels) if path == c.path]
+        if len(exact or found) != 1:
+            known = ", ".join(c.path for c in self.channels)
+            what = "more than one channel is" if found else "no channel is"
+            raise LogError(f"{self.name}: {what} called '{path}'; take one of {known}.")
+        return (exact or found)[0]
+
+    def of(self, sensor: str) -> tuple[int, ...]:
+        """Columns of one sensor.
+
+        Raises:
+            LogError: no such sensor.
+        """
+        if sensor not in {s.name for s in self.sensors}:
+            known = ", ".join(s.name for s in self.sensors)
+            raise LogError(f"{self.name}: no sensor is called '{sensor}'; take one of {known}.")
+        return tuple(i for i, c in enumerate(self.channels) if c.sensor == sensor)
+
+    def between(self, start_s: float = -np.inf, end_s: float = np.inf) -> Self:
+        """The rows with start_s <= time < end_s; times stay as they are."""
+        rows = slice(*np.searchsorted(self.time, (start_s, end_s)))
+        return replace(self, time=self.time[rows], value=self.value[rows], fresh=self.fresh[rows])
+
+    def select(self, paths: Iterable[str]) -> Self:
+        """The same log with only these channels, in this order."""
+        columns = [self.index(path) for path in paths]
+        kept = {self.channels[i].sensor for i in columns}
+        return replace(
+            self,
+            value=self.value[:, columns],
+            fresh=self.fresh[:, columns],
+            channels=tuple(self.channels[i] for i in columns),
+            sensors=tuple(s for s in self.sensors if s.name in kept),
+        )
+
+    def frame(self) -> pl.DataFrame:
+        """A table for people: `time_s` and one column `sensor.channel` in the channel's own unit, null where absent."""
+        columns: dict[str, Any] = {"time_s": self.time}
+        for i, channel in enumerate(self.channels):
+            columns[channel.path] = from_si(self.value[:, i], channel.unit)
+        return pl.DataFrame(columns).with_columns(pl.exclude("time_s").fill_nan(None))

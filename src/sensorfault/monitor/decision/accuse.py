@@ -1,0 +1,28 @@
+"""From tests over their limits to accused channels: what the decisions share."""
+
+import jax.numpy as jnp
+
+from sensorfault.types import Accusation, Evidence
+
+
+def accuse(evidence: Evidence, share: float) -> Accusation:
+    """Whom this sample's own scores accuse.
+
+    A test over its limit names every channel with at least `share` of its largest blame; the size of an accusation is
+    blame times score over limit. Struck channels stay accused; their size is -inf, since they are out already.
+    """
+    named, gated, tested = evidence.struck, evidence.struck, evidence.struck
+    size = jnp.full(evidence.struck.shape, -jnp.inf)
+    hit = evidence.struck.any()
+    for score, limit, gates in zip(evidence.scores, evidence.limits, evidence.gates, strict=True):
+        over = score.valid & (score.value > limit)
+        most = score.blame.max(axis=1, keepdims=True)
+        accused = over[:, None] & (score.blame > 0) & (score.blame >= share * most)
+        times = jnp.where(limit > 0, jnp.minimum(score.value / jnp.where(limit > 0, limit, 1.0), 1e30), 1e30)
+        size = jnp.maximum(size, jnp.where(accused, score.blame * times[:, None], -jnp.inf).max(axis=0))
+        accused = accused.any(axis=0)
+        named |= accused
+        gated |= accused & gates
+        tested |= (score.valid[:, None] & score.covers).any(axis=0)
+        hit |= over.any()
+    return Accusation(named, gated, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)

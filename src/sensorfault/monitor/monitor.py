@@ -1,0 +1,180 @@
+"""The loop: residual, tests, decision, exclusion, recovery, and back into every state. The only place where it closes."""
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.stage import Stage, keep_finite
+from sensorfault.types import (
+    FAULT,
+    NEVER,
+    OK,
+    UNKNOWN,
+    Accusation,
+    Evidence,
+    Report,
+    Residual,
+    Sample,
+    Score,
+    Trust,
+    Verdict,
+)
+
+
+class Branch(eqx.Module):
+    """One way of judging the residual: a test statistic and its threshold.
+
+    `gates`: an alarm of this branch may keep the present sample out of the filter. A window's alarm must not: it is
+    about the past.
+    """
+
+    statistic: Stage[Any, Residual, Score, Any]
+    threshold: Stage[Any, tuple[Residual, Score], Float[Array, " K"], Any]
+    gates: bool = eqx.field(static=True, default=True)
+
+
+class MonitorState(NamedTuple):
+    """The states of the parts, and per channel the last value seen and when."""
+
+    residual: Any
+    branches: tuple[tuple[Any, Any], ...]
+    decision: Any
+    recovery: Any
+    last: Float[Array, " C"]
+    seen: Float[Array, " C"]
+
+
+class _Judgement(NamedTuple):
+    scores: tuple[Score, ...]
+    limits: tuple[Float[Array, " K"], ...]
+    pending: tuple[tuple[Any, Any], ...]
+    told: Accusation
+    decided: Any
+
+
+_Round = tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " S"]]
+
+
+class Monitor(eqx.Module):
+    """A residual generator, judged in several branches, decided, recovered from: fitted and ready to run.
+
+    `owner[c]` is the sensor of channel c. `most` bounds how many sensors one sample may exclude, largest first; what is
+    still accused then is *unknown*. With most = 0 all accused are named at once. `hold_s[c]`: for how long a value may
+    stand in for a missing one before the channel counts as absent [s]; 0 for a channel that comes with every sample.
+    """
+
+    residual: Stage[Any, Sample, Residual, Any]
+    branches: tuple[Branch, ...]
+    decision: Stage[Any, Evidence, Accusation, Any]
+    recovery: Stage[Any, tuple[Sample, Residual, Verdict, Bool[Array, " C"]], Trust, Any]
+    hold_s: Float[Array, " C"]
+    owner: tuple[int, ...] = eqx.field(static=True)
+    most: int = eqx.field(static=True, default=0)
+
+    def init(self) -> MonitorState:
+        """State before the first sample."""
+        channels = len(self.owner)
+        return MonitorState(
+            self.residual.init(),
+            tuple((b.statistic.init(), b.threshold.init()) for b in self.branches),
+            self.decision.init(),
+            self.recovery.init(),
+            jnp.zeros(channels),
+            jnp.full(channels, NEVER),
+        )
+
+    def step(self, state: MonitorState, sample: Sample) -> tuple[MonitorState, Report]:
+        """Judge one sample, then let every part take in what it may."""
+        silence = sample.time - state.seen
+        sample, arrived = self._intake(state, sample, silence)
+        residual, work = self.residual.evaluate(state.residual, sample)
+        residual = residual._replace(valid=residual.valid & sample.fresh & jnp.isfinite(residual.value))
+
+        first = self._judge(state, residual, jnp.zeros(len(self.owner), bool))
+        told, decided, struck, out = self._exclude(state, residual, first)
+        verdict, gated = self._verdict(told, struck, out)
+        trust, recovered = self.recovery.evaluate(state.recovery, (sample, residual, verdict, gated))
+
+        # Evidence windows take what the first judgement saw, suspicious or not; the decision remembers the last one.
+        parts = (
+            self.residual.update(work, trust),
+            tuple(
+                (b.statistic.update(s, trust), b.threshold.update(t, trust))
+                for b, (s, t) in zip(self.branches, first.pending, strict=True)
+            ),
+            self.decision.update(decided, trust),
+            self.recovery.update(recovered, trust),
+        )
+        kept = (keep_finite(new, old) for new, old in zip(parts, state[:4], strict=True))
+        after = MonitorState(*kept, last=sample.value, seen=jnp.where(arrived, sample.time, state.seen))
+        return after, Report(residual, first.scores, first.limits, verdict, trust, silence)
+
+    def _intake(
+        self, state: MonitorState, sample: Sample, silence: Float[Array, " C"]
+    ) -> tuple[Sample, Bool[Array, " C"]]:
+        """What is not a number is not there; what came a moment ago is held, not absent."""
+        arrived = sample.present & jnp.isfinite(sample.value)
+        held = (silence <= self.hold_s) & ~sample.born
+        value = jnp.where(arrived, sample.value, state.last)
+        return sample._replace(value=value, present=arrived | held, fresh=sample.fresh & arrived), arrived
+
+    def _judge(self, state: MonitorState, residual: Residual, struck: Bool[Array, " C"]) -> _Judgement:
+        scores, limits, pending = [], [], []
+        for branch, (of_statistic, of_threshold) in zip(self.branches, state.branches, strict=True):
+            score, s = branch.statistic.evaluate(of_statistic, residual)
+            limit, t = branch.threshold.evaluate(of_threshold, (residual, score))
+            scores.append(score._replace(valid=score.valid & ~jnp.isnan(score.value) & ~jnp.isnan(limit)))
+            limits.append(limit)
+            pending.append((s, t))
+        gates = tuple(branch.gates for branch in self.branches)
+        evidence = Evidence(residual.time, tuple(scores), tuple(limits), gates, struck)
+        told, decided = self.decision.evaluate(state.decision, evidence)
+        return _Judgement(tuple(scores), tuple(limits), tuple(pending), told, decided)
+
+    def _exclude(
+        self, state: MonitorState, residual: Residual, first: _Judgement
+    ) -> tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " S"]]:
+        """Take out the worst sensor and judge the rest again, up to `most` times. A healthy sample pays nothing."""
+        owner = jnp.asarray(self.owner)
+        sensors = max(self.owner) + 1
+        nobody = jnp.zeros(len(self.owner), bool), jnp.zeros(sensors, bool)
+        if not self.most:
+            return first.told, first.decided, *nobody
+
+        def accused(told: Accusation, out: Bool[Array, " S"]) -> Bool[Array, " C"]:
+            return told.named & (told.size > -jnp.inf) & ~out[owner]
+
+        def more(carry: _Round) -> Bool[Array, ""]:
+            told, _, _, out = carry
+            return accused(told, out).any() & (out.sum() < self.most)
+
+        def strike(carry: _Round) -> _Round:
+            told, _, struck, out = carry
+            now = accused(told, out)
+            worst = owner == owner[jnp.argmax(jnp.where(now, told.size, -jnp.inf))]
+            struck = struck | (now & worst)
+            out = out | jax.ops.segment_max(worst.astype(jnp.int8), owner, sensors).astype(bool)
+            again = self._judge(state, residual._replace(valid=residual.valid & ~out[owner]), struck)
+            return again.told, again.decided, struck, out
+
+        told, decided, struck, out = lax.while_loop(more, strike, (first.told, first.decided, *nobody))
+        return told, decided, struck, out
+
+    def _verdict(
+        self, told: Accusation, struck: Bool[Array, " C"], out: Bool[Array, " S"]
+    ) -> tuple[Verdict, Bool[Array, " C"]]:
+        """Three-valued verdicts, and which channels a filter must not take in."""
+        owner = jnp.asarray(self.owner)
+        removed = out[owner]
+        # Accused by this sample's own scores, yet no exclusion left: unknown, not ok.
+        left = told.named & (told.size > -jnp.inf) & ~struck & bool(self.most)
+        bad = told.named & ~left
+        clear = told.tested & ~left & ~removed
+        channel = jnp.where(bad, FAULT, jnp.where(clear, OK, UNKNOWN)).astype(jnp.int8)
+        sensor = jax.ops.segment_max(channel, owner, max(self.owner) + 1)
+        sample = jnp.where(bad.any() | told.hit, FAULT, jnp.where(told.tested.any(), OK, UNKNOWN)).astype(jnp.int8)
+        return Verdict(channel, sensor, sample), told.gated | removed | (left & told.gated)

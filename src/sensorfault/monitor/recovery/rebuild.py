@@ -1,0 +1,42 @@
+"""Put the expected value in the place of a faulty one, for as long as it may be believed."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.types import FAULT, NEVER, OK, Residual, Sample, Trust, Verdict
+
+
+class _Since(NamedTuple):
+    healthy: Float[Array, " C"]  # when the channel was last taken at its own word [s]
+
+
+class Rebuild(eqx.Module):
+    """Stand-in = expected value, up to `horizon_s` after the last trusted measurement."""
+
+    horizon_s: Float[Array, ""]
+    channels: int = eqx.field(static=True)
+
+    def init(self) -> _Since:
+        return _Since(jnp.full(self.channels, NEVER))
+
+    def evaluate(
+        self, state: _Since, seen: tuple[Sample, Residual, Verdict, Bool[Array, " C"]]
+    ) -> tuple[Trust, _Since]:
+        sample, residual, verdict, gated = seen
+        faulty = (verdict.channel == FAULT) & gated
+        measured = sample.fresh & ~gated
+        filled = faulty & sample.present & (sample.time - state.healthy <= self.horizon_s)
+        trust = Trust(
+            value=jnp.where(filled, residual.expected, sample.value),
+            measured=measured,
+            filled=filled,
+            learn=measured & (verdict.channel == OK) & (verdict.sample == OK),
+            born=sample.born,
+        )
+        return trust, _Since(jnp.where(measured, sample.time, state.healthy))
+
+    def update(self, pending: _Since, trust: Trust) -> _Since:
+        return pending

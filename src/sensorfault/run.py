@@ -1,0 +1,134 @@
+"""One step, three runners: replay (scan), live (one compiled step), fleet (vmap)."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jax.flatten_util import ravel_pytree
+from jaxtyping import Array, Bool, Float, Int8
+
+from sensorfault.monitor.monitor import Monitor, MonitorState
+from sensorfault.types import Report, Sample
+
+Kept = TypeVar("Kept")
+
+
+def everything(report: Report) -> Report:
+    """Keep the full report: 3 kB a sample for 12 channels."""
+    return report
+
+
+def samples(
+    time: Float[np.ndarray, " T"], value: Float[np.ndarray, "T C"], fresh: Bool[np.ndarray, "T C"], block: Any = ()
+) -> Sample:
+    """Rows of a log as the samples a monitor takes; NaN is *absent*."""
+    present = np.isfinite(value)
+    return Sample(
+        jnp.asarray(time),
+        jnp.asarray(value),
+        jnp.asarray(present),
+        jnp.asarray(fresh & present),
+        jnp.zeros(value.shape, bool),
+        jax.tree.map(jnp.asarray, block),
+    )
+
+
+def replay(
+    monitor: Monitor, state: MonitorState, rows: Sample, keep: Callable[[Report], Kept] = everything
+) -> tuple[MonitorState, Kept]:
+    """A whole log through the monitor: the state after it, and what `keep` takes of each report, stacked over time."""
+
+    def one(state: MonitorState, sample: Sample) -> tuple[MonitorState, Kept]:
+        state, report = monitor.step(state, sample)
+        return state, keep(report)
+
+    return lax.scan(one, state, rows)
+
+
+def fleet(
+    monitor: Monitor, states: MonitorState, rows: Sample, keep: Callable[[Report], Kept] = everything
+) -> tuple[MonitorState, Kept]:
+    """Many vehicles, or many injected faults, through one monitor: `states` and `rows` have a leading axis."""
+    return jax.vmap(lambda state, one: replay(monitor, state, one, keep))(states, rows)
+
+
+class Now(NamedTuple):
+    """What Live says of the sample it was just given."""
+
+    channel: Int8[np.ndarray, " C"]
+    sensor: Int8[np.ndarray, " S"]
+    sample: int
+    score: Float[np.ndarray, " K"]  # of all branches, one after the other
+    limit: Float[np.ndarray, " K"]
+    value: Float[np.ndarray, " C"]  # measured, or its stand-in [SI]
+    residual: Float[np.ndarray, " C"]  # [SI]
+    silence: Float[np.ndarray, " C"]  # [s]
+
+
+def _tell(report: Report) -> tuple[Array, ...]:
+    return (
+        report.verdict.channel,
+        report.verdict.sensor,
+        report.verdict.sample,
+        jnp.concatenate([score.value for score in report.scores]),
+        jnp.concatenate(report.limits),
+        report.trust.value,
+        report.residual.value,
+        report.silence,
+    )
+
+
+class Live:
+    """One sample in, one verdict out.
+
+    Two things make a live step cheap. State, sample and answer cross into the compiled step as one vector each. And the
+    step stands in a loop whose length (always one) the compiler cannot know: XLA then compiles it as one function, as
+    it does inside a replay, instead of dispatching every small operation by itself (23 against 97 microseconds).
+    `block` is an example of the residual's private block, for monitors that have one.
+    """
+
+    def __init__(self, monitor: Monitor, block: Any = ()) -> None:
+        channels = len(monitor.owner)
+        self._state, restore = ravel_pytree(monitor.init())
+        extra, restore_block = ravel_pytree(block)
+        self._channels = channels
+        self._row = np.ones(2 + 2 * channels + extra.size)  # [1, time, value, fresh, block]
+
+        def unpack(row: Array) -> Sample:
+            value, fresh = row[2 : 2 + channels], row[2 + channels : 2 + 2 * channels] > 0
+            none = jnp.zeros(channels, bool)
+            return Sample(row[1], value, fresh | ~none, fresh, none, restore_block(row[2 + 2 * channels :]))
+
+        def once(flat: Array, row: Array) -> tuple[Array, Array]:
+            state, report = monitor.step(restore(flat), unpack(row))
+            return ravel_pytree(state)[0], ravel_pytree(_tell(report))[0]
+
+        def step(flat: Array, row: Array) -> tuple[Array, Array]:
+            answer = jnp.zeros(jax.eval_shape(once, flat, row)[1].shape)
+            return lax.fori_loop(0, row[0].astype(int), lambda _, carry: once(carry[0], row), (flat, answer))
+
+        self._step = jax.jit(step, donate_argnums=0)
+        self._state, _ = self._step(self._state, np.zeros_like(self._row))  # compile; a loop of none changes nothing
+        told = jax.eval_shape(
+            lambda flat, row: _tell(monitor.step(restore(flat), unpack(row))[1]), self._state, self._row
+        )
+        ends = np.cumsum([int(np.prod(one.shape)) for one in told]).tolist()
+        self._cuts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True)]
+
+    def push(self, time: float, value: Any, fresh: Any = True, block: Any = None) -> Now:
+        """Judge one sample: `time` [s], `value` (C,) in SI with NaN for what is absent, `fresh` (C,) or one for all."""
+        row, c = self._row, self._channels
+        row[1] = time
+        row[2 : 2 + c] = value
+        row[2 + c : 2 + 2 * c] = fresh
+        if block is not None:
+            row[2 + 2 * c :] = np.concatenate([np.ravel(x) for x in jax.tree.leaves(block)])
+        self._state, told = self._step(self._state, row)
+        answer = np.asarray(told)
+        channel, sensor, sample, *rest = (answer[cut] for cut in self._cuts)
+        return Now(channel.astype(np.int8), sensor.astype(np.int8), int(sample[0]), *rest)
