@@ -1,0 +1,107 @@
+"""Faults into a log: the same log with some sensors lying, and the truth about it.
+
+Every fault acts on measurements (the `fresh` entries of a channel). A row that only repeats a measurement repeats what
+has become of it: the value, or its absence.
+"""
+
+import json
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Int
+
+from sensorfault.faults.check import check_fault, check_onset, columns_of, sigma_of
+from sensorfault.faults.fault import OFFSETS, Fault, FaultError
+from sensorfault.faults.shapes import SHAPES, Struck, spikes
+from sensorfault.logs.table import Log
+from sensorfault.logs.units import to_si
+
+
+@dataclass(frozen=True)
+class Injected:
+    """A log with faults, and the truth.
+
+    `truth`: the faults as they were done, by onset: clipped to the log, a single spike at the time of the measurement
+    it struck. `mask`: the entries that a fault struck (a jam strikes a measurement even where it does not change it).
+    """
+
+    log: Log
+    truth: tuple[Fault, ...]
+    mask: Bool[np.ndarray, "T C"]
+
+
+def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:
+    """Let sensors of a log lie; the log given stays as it is.
+
+    Faults on one channel act one after another, by onset, each on what the former left; the order of `faults` does not
+    matter. Chance depends on `seed` and the fault alone, so a fault does the same whatever else is injected.
+
+    Raises:
+        FaultError: a fault that the log has no room for, or that makes no sense.
+    """
+    value, fresh = log.value.copy(), log.fresh.copy()
+    mask = np.zeros_like(fresh)
+    truth = []
+    for fault in sorted(faults, key=_order):
+        check_fault(fault)
+        check_onset(fault, log)
+        onsets = []
+        for column in columns_of(fault, log):
+            rng = _chance(fault, log.channels[column].path, seed)
+            rows_of = np.flatnonzero(fresh[:, column])
+            at = _struck(fault, log.time[rows_of], rng)
+            if not at.size:
+                continue
+            read = Struck(log.time[rows_of], value[rows_of, column], at, fault.start_s, _size(fault, log, column), rng)
+            became = np.full(len(rows_of), np.nan)
+            became[at] = SHAPES[fault.kind](read)
+            source = np.cumsum(fresh[:, column]) - 1  # row t repeats measurement source[t]
+            rows = np.isin(source, at) & np.isfinite(value[:, column])
+            value[rows, column] = became[source[rows]]
+            fresh[rows, column] &= np.isfinite(value[rows, column])
+            mask[rows, column] = True
+            onsets.append(float(read.time[at[0]]))
+        if not onsets:
+            raise FaultError(
+                f"{log.name}: {fault.where} measures nothing from {fault.start_s:g} to {fault.end_s:g} s for "
+                f"'{fault.kind}' to strike; move the onset or make it longer."
+            )
+        truth.append(_as_done(fault, log, min(onsets)))
+    return Injected(replace(log, value=value, fresh=fresh), tuple(truth), mask)
+
+
+def _order(fault: Fault) -> tuple[float, str]:
+    return fault.start_s, json.dumps(fault.as_dict())
+
+
+def _chance(fault: Fault, path: str, seed: int) -> np.random.Generator:
+    """Random numbers that depend on the seed, the fault and the channel."""
+    return np.random.default_rng([seed, zlib.crc32(json.dumps([fault.as_dict(), path]).encode())])
+
+
+def _struck(fault: Fault, time: np.ndarray, rng: np.random.Generator) -> Int[np.ndarray, " n"]:
+    """Which measurements the fault strikes."""
+    first, end = np.searchsorted(time, (fault.start_s, fault.end_s))
+    if fault.kind != "short":
+        return np.arange(first, end)
+    if fault.duration_s == 0:
+        return np.arange(first, min(first + 1, len(time)))
+    return spikes(np.arange(first, end), rng)
+
+
+def _size(fault: Fault, log: Log, column: int) -> float:
+    """The magnitude in SI; sigmas are those of the healthy log."""
+    if fault.kind not in OFFSETS:
+        return fault.magnitude
+    if fault.sigmas:
+        return fault.magnitude * sigma_of(log, column)
+    return to_si(fault.magnitude, log.channels[column].unit)
+
+
+def _as_done(fault: Fault, log: Log, onset_s: float) -> Fault:
+    if fault.duration_s == 0:
+        return replace(fault, start_s=onset_s)
+    end_s = float(log.time[-1])
+    return fault if fault.end_s <= end_s else replace(fault, duration_s=end_s - fault.start_s)

@@ -1,0 +1,69 @@
+"""A schedule of faults over a log, one after another with healthy pauses between them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sensorfault.faults.fault import KINDS, OFFSETS, Fault, FaultError
+from sensorfault.logs.table import Log
+
+# Sizes at which each kind is plain to see but not absurd: offsets in sigmas, drift in sigmas a second.
+SIZES = {"short": 10.0, "bias": 5.0, "drift": 0.5, "noise": 3.0, "scale": 2.0, "delay": 1.0, "jam": 0.0, "miss": 0.0}
+
+
+def sweep(
+    log: Log, kinds: Sequence[str] = KINDS, channels: Sequence[str] | None = None, duration_s: float = 10.0
+) -> tuple[Fault, ...]:
+    """Every kind on every channel, at the sizes of `SIZES`, not yet scheduled (a short is a single spike).
+
+    `channels`: paths such as `gyro.z`; None takes all channels of the sensors that a method may judge.
+
+    Raises:
+        FaultError: an unknown kind.
+        LogError: an unknown channel.
+    """
+    if unknown := [kind for kind in kinds if kind not in KINDS]:
+        raise FaultError(f"Fault kind '{unknown[0]}' is unknown; take one of {', '.join(KINDS)}.")
+    watched = {sensor.name for sensor in log.sensors if sensor.watch}
+    paths = [c.path for c in log.channels if c.sensor in watched] if channels is None else channels
+    struck = [log.channels[log.index(path)] for path in paths]
+    return tuple(
+        Fault(k, c.sensor, c.name, 0.0, 0.0 if k == "short" else duration_s, SIZES[k], sigmas=k in OFFSETS)
+        for k in kinds
+        for c in struck
+    )
+
+
+def plan(
+    log: Log,
+    faults: Iterable[Fault],
+    start_s: float = -np.inf,
+    end_s: float = np.inf,
+    pause_s: float = 10.0,
+    seed: int = 0,
+) -> tuple[Fault, ...]:
+    """Give each fault an onset, in shuffled order, between `start_s` and `end_s` of the log.
+
+    Before the first, between any two and after the last lie at least `pause_s` healthy seconds; what time is left over
+    is dealt out at random. The onsets that the faults came with are forgotten.
+
+    Raises:
+        FaultError: the faults and pauses need more time than there is.
+    """
+    wanted = list(faults)
+    rng = np.random.default_rng(seed)
+    begin, end = max(start_s, float(log.time[0])), min(end_s, float(log.time[-1]))
+    lasting = np.array([fault.duration_s for fault in wanted])
+    needed = float(lasting.sum()) + pause_s * (len(wanted) + 1)
+    if needed > end - begin:
+        raise FaultError(
+            f"{log.name}: {len(wanted)} faults with pauses of {pause_s:g} s need {needed:g} s and there are "
+            f"{max(end - begin, 0.0):g} s; plan fewer or shorter faults."
+        )
+    order = rng.permutation(len(wanted))
+    # Uniform points cut the spare time into n + 1 gaps: onset_i = begin + cut_i + (i + 1) pause + earlier durations.
+    cuts = np.sort(rng.uniform(0.0, end - begin - needed, len(wanted)))
+    earlier = np.concatenate(([0.0], np.cumsum(lasting[order])))[:-1]
+    onsets = begin + cuts + pause_s * np.arange(1, len(wanted) + 1) + earlier
+    return tuple(replace(wanted[i], start_s=float(onset)) for i, onset in zip(order, onsets, strict=True))
