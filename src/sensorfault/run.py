@@ -39,7 +39,10 @@ def samples(
 
 
 def replay(
-    monitor: Monitor, state: MonitorState, rows: Sample, keep: Callable[[Report], Kept] = everything
+    monitor: Monitor,
+    state: MonitorState,
+    rows: Sample,
+    keep: Callable[[Report], Kept] = everything,  # type: ignore[assignment]
 ) -> tuple[MonitorState, Kept]:
     """A whole log through the monitor: the state after it, and what `keep` takes of each report, stacked over time."""
 
@@ -51,7 +54,10 @@ def replay(
 
 
 def fleet(
-    monitor: Monitor, states: MonitorState, rows: Sample, keep: Callable[[Report], Kept] = everything
+    monitor: Monitor,
+    states: MonitorState,
+    rows: Sample,
+    keep: Callable[[Report], Kept] = everything,  # type: ignore[assignment]
 ) -> tuple[MonitorState, Kept]:
     """Many vehicles, or many injected faults, through one monitor: `states` and `rows` have a leading axis."""
     return jax.vmap(lambda state, one: replay(monitor, state, one, keep))(states, rows)
@@ -110,7 +116,10 @@ class Live:
 
         def step(flat: Array, row: Array) -> tuple[Array, Array]:
             answer = jnp.zeros(jax.eval_shape(once, flat, row)[1].shape)
-            return lax.fori_loop(0, row[0].astype(int), lambda _, carry: once(carry[0], row), (flat, answer))
+            done: tuple[Array, Array] = lax.fori_loop(
+                0, row[0].astype(int), lambda _, carry: once(carry[0], row), (flat, answer)
+            )
+            return done
 
         self._step = jax.jit(step, donate_argnums=0)
         self._state, _ = self._step(self._state, np.zeros_like(self._row))  # compile; a loop of none changes nothing

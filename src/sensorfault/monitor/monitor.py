@@ -1,4 +1,4 @@
-"""The loop: residual, tests, decision, exclusion, recovery, and back into every state. The only place where it closes."""
+"""The loop: residual, tests, decision, exclusion, recovery, and back into every state; the one place where it closes."""
 
 from typing import Any, NamedTuple
 
@@ -110,7 +110,7 @@ class Monitor(eqx.Module):
             self.recovery.update(recovered, trust),
         )
         kept = (keep_finite(new, old) for new, old in zip(parts, state[:4], strict=True))
-        after = MonitorState(*kept, last=sample.value, seen=jnp.where(arrived, sample.time, state.seen))
+        after = MonitorState(*kept, sample.value, jnp.where(arrived, sample.time, state.seen))
         return after, Report(residual, first.scores, first.limits, verdict, trust, silence)
 
     def _intake(

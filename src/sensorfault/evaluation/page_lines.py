@@ -1,0 +1,71 @@
+"""Fewer points for the same picture: what is drawn of a long signal."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, Int8
+
+Span = tuple[float, float]  # from, to [s]
+
+
+def extremes(value: Float[np.ndarray, " T"], buckets: int) -> Int[np.ndarray, " K"]:
+    """Where the least and the greatest value of each of `buckets` stretches stand, and both ends; rising.
+
+    Nothing that sticks out is lost, not even a spike of one sample. Values must be finite.
+    """
+    rows = value.size
+    if rows <= 2 * buckets:
+        return np.arange(rows)
+    width = -(-rows // buckets)
+    start = np.arange(0, rows, width)
+    table = np.pad(value, (0, start.size * width - rows), mode="edge").reshape(start.size, width)
+    found = (start + table.argmin(axis=1), start + table.argmax(axis=1), [0, rows - 1])
+    return np.unique(np.minimum(np.concatenate(found), rows - 1))
+
+
+def near(time: Float[np.ndarray, " T"], spans: Sequence[Span], budget: int) -> Bool[np.ndarray, " T"]:
+    """Ticks close to a start or an end of `spans`: two seconds either side, fewer where there would be over `budget`."""
+    mask = np.zeros(time.size, dtype=bool)
+    if not spans or time.size < 2:
+        return mask
+    most = max(1, budget // (4 * len(spans)))
+    edges = np.unique(np.array(spans, dtype=float))
+    first, middle, last = (np.searchsorted(time, edges + margin) for margin in (-2.0, 0.0, 2.0))
+    for low, centre, high in zip(first, middle, last, strict=True):
+        mask[max(low, centre - most) : min(high, centre + most) + 1] = True
+    return mask
+
+
+def line(
+    time: Float[np.ndarray, " T"], value: Float[np.ndarray, " T"], keep: Bool[np.ndarray, " T"], points: int
+) -> tuple[Float[np.ndarray, " K"], Float[np.ndarray, " K"]]:
+    """About `points` points that draw `value` over `time`, all of `keep` among them; a NaN breaks the line at a gap.
+
+    A gap is a step three times longer than the usual one between two values, so a sensor slower than the clock is
+    still one line. Of very many gaps only the longest stay open.
+    """
+    finite = np.flatnonzero(np.isfinite(value))
+    t, v = time[finite], value[finite]
+    if t.size < 3:
+        return t, v
+    step = np.diff(t)
+    gap = np.flatnonzero(step > 3 * np.median(step))
+    gap = np.sort(gap[np.argsort(step[gap])[-points // 4 :]])
+    drawn = np.unique(np.concatenate((extremes(v, points // 2), np.flatnonzero(keep[finite]), gap, gap + 1)))
+    place = np.searchsorted(drawn, gap + 1)
+    return np.insert(t[drawn], place, t[gap] + step[gap] / 2), np.insert(v[drawn], place, np.nan)
+
+
+def runs(verdict: Int8[np.ndarray, " T"], most: int = 1500) -> tuple[Int[np.ndarray, " K"], Int8[np.ndarray, " K"]]:
+    """First row and verdict of each stretch of one verdict.
+
+    Of more than `most` stretches neighbours are drawn as one, with the worst verdict among them: no fault is lost.
+    """
+    rows = verdict.size
+    start = np.flatnonzero(np.diff(verdict, prepend=verdict[:1] - 1)) if rows else np.zeros(0, dtype=int)
+    if start.size <= most:
+        return start, verdict[start]
+    bucket = np.arange(0, rows, -(-rows // most))
+    worst = np.maximum.reduceat(verdict, bucket)
+    first, value = runs(worst, most)
+    return bucket[first], value

@@ -1,0 +1,120 @@
+"""The words and tables of the report page, as HTML. Everything that comes from a file is escaped here."""
+
+from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
+from html import escape
+
+from sensorfault.detection import Detection
+from sensorfault.events import Event
+from sensorfault.faults.fault import Fault
+
+
+def clock(seconds: float) -> str:
+    """[s] -> m:ss.ss, from an hour on h:mm:ss.ss."""
+    hundredths = round(abs(seconds) * 100)
+    minutes, rest = divmod(hundredths, 6000)
+    hours, minutes = divmod(minutes, 60)
+    text = f"{hours}:{minutes:02d}:{rest / 100:05.2f}" if hours else f"{minutes}:{rest / 100:05.2f}"
+    return f"−{text}" if seconds < 0 else text
+
+
+def number(value: float | None) -> str:
+    """Three digits, or a dash where there is nothing to say."""
+    return "–" if value is None else f"{value:.3g}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number or 'no'} {what}{'' if number == 1 else 's'}"
+
+
+def result(detection: Detection) -> str:
+    """The finding in one sentence."""
+    events, sensors = detection.events, detection.log.sensors
+    faults = [e for e in events if e.subject == "sensor"]
+    named = {e.sensor for e in faults if e.sensor is not None}
+    text = _count(len(faults), "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
+    nameless = sum(e.sensor is None for e in faults)
+    if nameless:
+        text += f", {nameless} of them not laid to one sensor"
+    if len(events) > len(faults):
+        text += f", {_count(len(events) - len(faults), 'implausible motion')}"
+    text += f"; {_count(sum(s.watch for s in sensors), 'sensor')} watched"
+    blind = [s.name for s in sensors if not s.watch]
+    if blind:
+        text += f", {', '.join(blind)} not judged (only {'its' if len(blind) == 1 else 'their'} silence is noticed)"
+    return escape(text[0].upper() + text[1:] + ".")
+
+
+def facts(detection: Detection) -> str:
+    """Duration, rate, size, start and method in one line."""
+    log = detection.log
+    items = [f"duration {clock(log.duration_s)}", f"{len(log):,} samples"]
+    if len(log) > 1:
+        items[-1] += f" at {1 / log.period_s:.3g} Hz"
+    items += [_count(len(log.sensors), "sensor"), _count(len(log.channels), "channel")]
+    if log.epoch_s is not None:
+        items.append(f"from {datetime.fromtimestamp(log.epoch_s, UTC):%Y-%m-%d %H:%M:%S} UTC")
+    return escape(" · ".join([*items, f"method {detection.method}"]))
+
+
+def sentences(heading: str, lines: Sequence[str]) -> str:
+    """A short list under a heading, or nothing."""
+    if not lines:
+        return ""
+    return f"<h3>{escape(heading)}</h3><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>"
+
+
+def found(fault: Fault, events: Iterable[Event]) -> bool:
+    """Whether some event names the fault's sensor while the fault lasts. For display only; no measure of merit."""
+    return any(
+        e.sensor == fault.sensor and e.start_s <= fault.end_s and (e.end_s is None or e.end_s >= fault.start_s)
+        for e in events
+    )
+
+
+def _row(start_s: float, end_s: float | None, log_end_s: float, cells: Sequence[str], tone: str = "") -> str:
+    """A row that zooms the plots to its time; `cells` are escaped here."""
+    last = log_end_s if end_s is None else end_s
+    times = [_time(start_s), "lasts" if end_s is None else _time(end_s)]
+    body = "".join(f'<td class="time">{cell}</td>' for cell in times) + "".join(f"<td>{escape(c)}</td>" for c in cells)
+    return f'<tr tabindex="0" data-from="{start_s:.6f}" data-to="{last:.6f}" class="{tone}">{body}</tr>'
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.2f} s <small>{clock(seconds)}</small>"
+
+
+def _table(heads: Sequence[str], rows: Sequence[str]) -> str:
+    head = "".join(f"<th>{escape(h)}</th>" for h in heads)
+    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'
+
+
+def event_table(detection: Detection) -> str:
+    """All events, numbered as in the plots."""
+    if not detection.events:
+        return '<p class="none">No fault was found.</p>'
+    end = float(detection.log.time[-1])
+    rows = []
+    for i, e in enumerate(detection.events, 1):
+        who = e.sensor or ("vehicle motion" if e.subject == "motion" else "unknown which")
+        against = f"{number(e.peak_score)} / {number(e.limit)}"
+        row = _row(e.start_s, e.end_s, end, (who, e.channel or "–", e.kind, against, e.method))
+        rows.append(row.replace("<td", f"<td>{i}</td><td", 1))
+    return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
+
+
+def truth_table(detection: Detection, truth: Sequence[Fault]) -> str:
+    """All injected faults, found or missed, or nothing where none was injected."""
+    if not truth:
+        return ""
+    end = float(detection.log.time[-1])
+    rows, hits = [], 0
+    for fault in truth:
+        hit = found(fault, detection.events)
+        hits += hit
+        size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in ("jam", "miss") else "–"
+        cells = (fault.sensor, fault.channel or "all", fault.kind, size, "found" if hit else "missed")
+        rows.append(_row(fault.start_s, fault.end_s, end, cells, "hit" if hit else "missed"))
+    text = f"{hits} of {len(truth)} found, counting any event on the same sensor that overlaps."
+    heads = ("start", "end", "sensor", "channel", "kind", "magnitude", "")
+    return f"<h2>Injected faults</h2><p>{text}</p>{_table(heads, rows)}"

@@ -1,0 +1,32 @@
+"""Which channels a method that judges whole samples can watch, and why not the others."""
+
+import numpy as np
+from jaxtyping import Bool
+
+from sensorfault.logs.table import Log, LogError
+
+
+def watchable(log: Log) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
+    """Channels that come with (nearly) every tick and move; for the rest, path -> reason in a few words.
+
+    Raises:
+        LogError: nothing is left to watch.
+    """
+    sensors = {sensor.name: sensor for sensor in log.sensors}
+    measured = log.fresh & np.isfinite(log.value)
+    often = measured.mean(axis=0) >= 0.5
+    watched = np.zeros(len(log.channels), bool)
+    reasons: dict[str, str] = {}
+    for i, channel in enumerate(log.channels):
+        if not sensors[channel.sensor].watch:
+            reasons[channel.path] = "vehicle.toml says watch = false"
+        elif not often[i]:
+            reasons[channel.path] = "slower than the clock"
+        elif np.ptp(log.value[measured[:, i], i]) == 0:
+            reasons[channel.path] = "constant in the training data"
+        else:
+            watched[i] = True
+    if not watched.any():
+        said = "; ".join(f"{path}: {reason}" for path, reason in reasons.items())
+        raise LogError(f"{log.name} has no channel to watch ({said}); set watch = true for one that moves.")
+    return watched, reasons

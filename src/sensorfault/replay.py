@@ -1,0 +1,97 @@
+"""A whole log through a monitor, chunk by chunk: one compilation for every length, bounded memory, progress."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Bool, Float, Int8
+
+from sensorfault.logs.table import Log
+from sensorfault.monitor.monitor import Monitor, MonitorState
+from sensorfault.run import samples
+from sensorfault.types import Report, Sample
+
+CHUNK = 8192
+
+Progress = Callable[[float], None]
+
+
+class Replayed(NamedTuple):
+    """What a replay keeps of every sample, stacked over time. Scores are NaN where a test had nothing to test."""
+
+    channel: Int8[np.ndarray, "T C"]
+    sensor: Int8[np.ndarray, "T S"]
+    sample: Int8[np.ndarray, " T"]
+    scores: tuple[Float[np.ndarray, "T K"], ...]
+    limits: tuple[Float[np.ndarray, "T K"], ...]
+    measured: Float[np.ndarray, "T C"]
+    residual: Float[np.ndarray, "T C"]
+    valid: Bool[np.ndarray, "T C"]
+    value: Float[np.ndarray, "T C"]  # measured, or its stand-in [SI]
+    believed: Bool[np.ndarray, "T C"]  # whether `value` may be believed
+    silence: Float[np.ndarray, "T C"]
+
+
+def _keep(report: Report) -> Replayed:
+    return Replayed(
+        report.verdict.channel,
+        report.verdict.sensor,
+        report.verdict.sample,
+        tuple(jnp.where(score.valid, score.value, jnp.nan) for score in report.scores),
+        report.limits,
+        report.residual.measured,
+        report.residual.value,
+        report.residual.valid,
+        report.trust.value,
+        report.trust.measured | report.trust.filled,
+        report.silence,
+    )
+
+
+@jax.jit
+def _chunk(
+    monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"]
+) -> tuple[MonitorState, Replayed]:
+    """Rows beyond the log's end (`real` False) fill the last chunk and leave the state alone."""
+
+    def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, Replayed]:
+        sample, real = row
+        after, report = monitor.step(state, sample)
+        kept: MonitorState = jax.tree.map(lambda new, old: jnp.where(real, new, old), after, state)
+        return kept, _keep(report)
+
+    done: tuple[MonitorState, Replayed] = lax.scan(one, state, (rows, real))
+    return done
+
+
+def _strong(tree: tuple[Monitor, MonitorState]) -> tuple[Monitor, MonitorState]:
+    """Without weak types, which would compile the same step again."""
+    made: tuple[Monitor, MonitorState] = jax.tree.map(lambda x: jnp.asarray(x, jnp.result_type(x)), tree)
+    return made
+
+
+def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> Replayed:
+    """Judge every row of a log, from a fresh start. `progress` is told the share done, 0 to 1.
+
+    Raises:
+        ValueError: the log is empty.
+    """
+    total = len(log)
+    if not total:
+        raise ValueError(f"{log.name} has no rows to replay; give a longer part of it.")
+    (monitor, state), told = _strong((monitor, monitor.init())), []
+    for start in range(0, total, CHUNK):
+        rows = np.minimum(np.arange(start, start + CHUNK), total - 1)
+        real = np.arange(start, start + CHUNK) < total
+        chunk = samples(log.time[rows], log.value[rows], log.fresh[rows])
+        state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
+        told.append(jax.tree.map(lambda x, n=int(real.sum()): np.asarray(x)[:n], kept))
+        if progress:
+            progress(min(1.0, (start + CHUNK) / total))
+    stacked: Replayed = jax.tree.map(lambda *parts: np.concatenate(parts), *told)
+    return stacked

@@ -1,0 +1,37 @@
+"""Extreme learning machine: random hidden weights, output weights by one ridge regression."""
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.training.scaling import Scaling
+
+
+def ridge(hidden: Float[np.ndarray, "N L"], target: Float[np.ndarray, "N D"], c: float) -> Float[np.ndarray, "L D"]:
+    """beta = H'(I/C + HH')^-1 X, solved in the smaller of its two sizes. Min et al. 2021, equation (7).
+
+    For N > L it is the same as (I/C + H'H)^-1 H'X, an L by L system.
+    """
+    rows, width = hidden.shape
+    if rows > width:
+        beta: Float[np.ndarray, "L D"] = np.linalg.solve(np.eye(width) / c + hidden.T @ hidden, hidden.T @ target)
+        return beta
+    inner: Float[np.ndarray, "L D"] = hidden.T @ np.linalg.solve(np.eye(rows) / c + hidden @ hidden.T, target)
+    return inner
+
+
+def fit_elm(
+    value: Float[np.ndarray, "N C"], scaling: Scaling, hidden: int = 32, c: float = 1e3, seed: int = 0
+) -> Reconstruction:
+    """ELM autoencoder on healthy rows (SI, finite). Min et al. 2021, section 2.1; hidden weights uniform in (-1, 1)."""
+    random = np.random.default_rng(seed)
+    channels = value.shape[1]
+    w = random.uniform(-1, 1, (hidden, channels)) * scaling.watched
+    b = random.uniform(-1, 1, hidden)
+    x = scaling.to_unit(value)
+    # (3) h = f(W x + b)
+    h = 1 / (1 + np.exp(-(x @ w.T + b)))
+    # (7)
+    beta = ridge(h, x, c)
+    # (4) x~ = h beta
+    return scaling.reconstruction(w, b, beta.T, np.zeros(channels), "sigmoid", x - h @ beta)
