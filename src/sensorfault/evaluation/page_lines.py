@@ -24,7 +24,7 @@ def extremes(value: Float[np.ndarray, " T"], buckets: int) -> Int[np.ndarray, " 
 
 
 def near(time: Float[np.ndarray, " T"], spans: Sequence[Span], budget: int) -> Bool[np.ndarray, " T"]:
-    """Ticks close to a start or an end of `spans`: two seconds either side, fewer where there would be over `budget`."""
+    """Ticks close to a start or an end of `spans`: two seconds either side, fewer if over `budget`."""
     mask = np.zeros(time.size, dtype=bool)
     if not spans or time.size < 2:
         return mask

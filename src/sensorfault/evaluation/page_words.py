@@ -109,7 +109,7 @@ def truth_table(detection: Detection, truth: Sequence[Fault]) -> str:
         return ""
     end = float(detection.log.time[-1])
     rows, hits = [], 0
-    for fault in truth:
+    for fault in sorted(truth, key=lambda f: f.start_s):
         hit = found(fault, detection.events)
         hits += hit
         size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in ("jam", "miss") else "–"
