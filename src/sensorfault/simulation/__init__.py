@@ -1,0 +1,1 @@
+"""Drives that never happened: true motion and what real sensors would have said about it."""

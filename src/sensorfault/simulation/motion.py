@@ -1,0 +1,88 @@
+"""How a driver takes a route: speed over time, and the motion of the car that follows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.simulation.noise import gauss_markov, smooth
+from sensorfault.simulation.route import STEP_M, Route
+
+LATERAL = 2.8  # comfortable lateral acceleration [m/s^2]
+LAUNCH, BRAKE = 1.6, 1.9  # comfortable longitudinal acceleration and deceleration [m/s^2]
+EASING_S = 1.6  # a pedal is worked over about this time: jerk stays below 5 m/s^3
+WAIT_S = (5.0, 30.0)  # at a light
+GRAVITY = 9.81  # [m/s^2]
+ROLL_PER_G, PITCH_PER_G = np.deg2rad(4.0), np.deg2rad(3.0)  # lean of the body on its springs
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The truth at T ticks. Local frame: east, north, up; heading counts from east towards north (anticlockwise).
+
+    Roll is positive when the left side is up, pitch when the nose is down (axes x forward, y left, z up).
+    """
+
+    time: Float[np.ndarray, " T"]  # [s]
+    position: Float[np.ndarray, "T 3"]  # east, north, up of the start [m]
+    velocity: Float[np.ndarray, "T 3"]  # [m/s]
+    speed: Float[np.ndarray, " T"]  # along the road [m/s]
+    acceleration: Float[np.ndarray, "T 3"]  # forward, left, up of the road [m/s^2]
+    roll: Float[np.ndarray, " T"]  # [rad]
+    pitch: Float[np.ndarray, " T"]  # [rad]
+    heading: Float[np.ndarray, " T"]  # [rad], not wrapped
+
+
+def speed_limit(route: Route, rng: np.random.Generator) -> Float[np.ndarray, " M"]:
+    """Speed at each point of the route [m/s]: as fast as limit, curves and comfort allow, 0 at stops."""
+    mood = 0.92 + 0.06 * gauss_markov(rng, len(route.distance), STEP_M, 80.0)
+    # v² κ ≤ LATERAL
+    curve = LATERAL / np.maximum(np.abs(route.curvature), 1e-6)
+    most = np.where(route.stop, 0.0, np.minimum((route.limit * mood) ** 2, curve))
+    # v²(s) = min over earlier s' of most(s') + 2 a (s - s'), and from behind the same with the brakes
+    reach = 2 * LAUNCH * route.distance
+    most = np.minimum.accumulate(most - reach) + reach
+    reach = 2 * BRAKE * route.distance
+    most = np.maximum(np.minimum.accumulate((most + reach)[::-1])[::-1] - reach, 0.0)
+    most[route.stop] = 0.0  # exactly
+    return np.asarray(np.sqrt(most))
+
+
+def travel(route: Route, time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Motion:
+    """Drive the route from standstill; `time` [s] is even and starts at 0."""
+    dt = float(time[1] - time[0])
+    v = speed_limit(route, rng)
+    # Constant acceleration over a step: Δt = 2 Δs / (v + v⁺); a stop lasts from its arrival to its leaving.
+    arrival = np.concatenate(([0.0], np.cumsum(2 * STEP_M / (v[1:] + v[:-1]))))
+    wait = np.where(route.stop, rng.uniform(*WAIT_S, len(v)), 0.0)
+    leaving = arrival + np.cumsum(wait)
+    clock = np.stack((leaving - wait, leaving), axis=1).ravel()
+    speed = smooth(np.interp(time, clock, np.repeat(v, 2)), round(2 * EASING_S / dt))
+    distance = np.concatenate(([0.0], np.cumsum((speed[1:] + speed[:-1]) * dt / 2)))
+
+    def along(x: Float[np.ndarray, " M"]) -> Float[np.ndarray, " T"]:
+        return np.asarray(np.interp(distance, route.distance, x))
+
+    heading = along(_integral(route.curvature))
+    climb = along(np.arctan(route.slope))
+    level = np.cos(climb)
+    velocity = speed[:, None] * np.stack((level * np.cos(heading), level * np.sin(heading), np.sin(climb)), axis=1)
+    position = np.concatenate((np.zeros((1, 3)), np.cumsum((velocity[1:] + velocity[:-1]) * dt / 2, axis=0)))
+    forward = np.gradient(speed, dt)
+    left = speed**2 * along(route.curvature)
+    up = speed**2 * along(np.gradient(route.slope, STEP_M))
+    return Motion(
+        time=time,
+        position=position,
+        velocity=velocity,
+        speed=speed,
+        acceleration=np.stack((forward, left, up), axis=1),
+        roll=ROLL_PER_G * left / GRAVITY,
+        pitch=-PITCH_PER_G * forward / GRAVITY - climb,
+        heading=heading,
+    )
+
+
+def _integral(x: Float[np.ndarray, " M"]) -> Float[np.ndarray, " M"]:
+    """Trapezoids over the route, from 0."""
+    return np.concatenate(([0.0], np.cumsum((x[1:] + x[:-1]) * STEP_M / 2)))
