@@ -100,6 +100,6 @@ def _fault(entry: Any, number: int) -> Fault:
         wrong = not isinstance(full[name], types) or (isinstance(full[name], bool) and bool not in types)
         if wrong:
             raise FaultError(f"Fault {number} of the truth: '{name}' is {json.dumps(full[name])}; correct its type.")
-    fault = Fault(**full)
+    fault = Fault(**{name: float(x) if float in _TYPES[name] else x for name, x in full.items()})
     check_fault(fault)
     return fault

@@ -62,7 +62,7 @@ def ecef_to_geodetic(
         beta = np.arctan2((1 - FLATTENING) * np.sin(lat), np.cos(lat))
     # h = p cos φ + z sin φ - a √(1 - e² sin²φ), which holds at the poles too
     height = p * np.cos(lat) + z * np.sin(lat) - SEMI_MAJOR_AXIS**2 / transverse_radius(lat)
-    return lat, np.arctan2(y, x), height
+    return np.asarray(lat), np.asarray(np.arctan2(y, x)), np.asarray(height)
 
 
 def enu_axes(latitude: ArrayLike, longitude: ArrayLike) -> Float[np.ndarray, "*n 3 3"]:
