@@ -1,0 +1,170 @@
+"""A file's time column: seconds from its first row, rising strictly, and what was wrong with it."""
+
+from bisect import bisect_left
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from jaxtyping import Float, Int
+
+from sensorfault.logs.source import Source
+from sensorfault.logs.table import LogError
+
+GAP = 3.0  # a gap is longer than so many usual periods
+_JITTER = 0.25  # reported if one period in twenty is off by more than this share
+_HOPELESS = 0.2  # share of rows that may be dropped
+_PER_SECOND = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
+_UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: what a reading must lie in to be Unix time
+
+
+@dataclass(frozen=True)
+class Clock:
+    """T rows that are kept. `zero_s`: the column's first reading [s]; `time` [s] counts from there."""
+
+    zero_s: float
+    time: Float[np.ndarray, " T"]
+    rows: Int[np.ndarray, " T"]
+    notes: tuple[str, ...]
+
+    @property
+    def period_s(self) -> float:
+        """The usual time between two rows [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def is_unix(self) -> bool:
+        """Whether the readings are Unix time."""
+        return is_unix(self.zero_s)
+
+
+def is_unix(time_s: float) -> bool:
+    """Whether a reading [s] is Unix time, judged by its size."""
+    return _UNIX_S[0] <= time_s < _UNIX_S[1]
+
+
+def read_clock(source: Source, column: str, unit: str) -> Clock:
+    """The clock in a time column.
+
+    Raises:
+        LogError: no such column, no times in it, one row only, or more than a fifth of the rows going back.
+    """
+    zero, time = seconds(source, column, unit)
+    name, notes = source.path.name, []
+    usable = np.flatnonzero(np.isfinite(time))
+    if len(usable) < len(time):
+        bad = int(np.flatnonzero(~np.isfinite(time))[0])
+        notes.append(
+            f"{name}: {len(time) - len(usable)} rows have no time (first {_place(source, bad)}) and were dropped."
+        )
+    rows, faults = _rising(source, column, time, usable)
+    kept = time[rows]
+    if len(rows) < 2:
+        raise LogError(f"{source.path}: one row is no log; name a file with at least two rows at different times.")
+    return Clock(zero + float(kept[0]), kept - kept[0], rows, (*notes, *faults, *_unsteady(name, kept)))
+
+
+def seconds(source: Source, column: str, unit: str) -> tuple[float, np.ndarray]:
+    """The first reading [s] and the seconds since then, NaN where there is none.
+
+    Integers are subtracted as integers: nanoseconds since 1970 would lose 200 ns in a float.
+
+    Raises:
+        LogError: no such column, or readings that are no times.
+    """
+    if unit == "iso8601":
+        return _calendar(source, column)
+    reading = source.frame[column] if column in source.frame.columns else source.column(column)
+    reading = reading.dt.epoch("us") / 1e6 if reading.dtype.is_temporal() else source.column(column)
+    known = reading.drop_nulls()
+    if not len(known):
+        raise LogError(f"{source.path}: the time column '{column}' is empty; name another in vehicle.toml.")
+    first = known[0]
+    per_second = 1 if source.frame[column].dtype.is_temporal() else _PER_SECOND[unit]
+    return float(first) / per_second, (reading - first).cast(pl.Float64).to_numpy() / per_second
+
+
+def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
+    source_column = source.frame[column] if column in source.frame.columns else source.column(column)
+    stamp = source_column
+    if not stamp.dtype.is_temporal():
+        try:
+            stamp = (
+                stamp.cast(pl.String).str.strip_chars().str.to_datetime(time_unit="us", strict=False, time_zone="UTC")
+            )
+        except pl.exceptions.PolarsError:
+            stamp = pl.Series(column, [None] * len(stamp), dtype=pl.Datetime("us"))
+    bad = (stamp.is_null() & source_column.is_not_null()).arg_true()
+    if len(bad):
+        raise LogError(
+            f"{source.path}: {_place(source, int(bad[0]))}, column '{column}' holds '{source_column[int(bad[0])]}', which is "
+            "no date and time like 2026-11-23T12:00:00.5; mend the cell or the time column's unit."
+        )
+    ticks = stamp.dt.epoch("us")
+    first = ticks.drop_nulls()[0] if ticks.null_count() < len(ticks) else 0
+    return first / 1e6, (ticks - first).cast(pl.Float64).to_numpy() / 1e6
+
+
+def _place(source: Source, row: int) -> str:
+    return f"in line {row + source.first_line}" if source.first_line else f"in row {row + 1}"
+
+
+def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """The most rows that rise strictly in time; a single wild reading costs one row, wherever it points."""
+    step = np.diff(time[usable])
+    back, repeat = int(np.sum(step < 0)), int(np.sum(step == 0))
+    if back + repeat == 0:
+        return usable, []
+    rows = usable[_longest_rise(time[usable])]
+    dropped = len(usable) - len(rows)
+    first = int(usable[1 + np.flatnonzero(step <= 0)[0]])
+    found = " and ".join(
+        text for count, text in ((back, f"goes back {back} times"), (repeat, f"stands still {repeat} times")) if count
+    )
+    if dropped > _HOPELESS * len(usable):
+        raise LogError(
+            f"{source.path}: time '{column}' {found} (first {_place(source, first)}), so {dropped} of {len(usable)} rows are "
+            "out of order; sort the file by time, keep one row for each time, or name another time column."
+        )
+    return rows, [
+        f"{source.path.name}: time '{column}' {found} (first {_place(source, first)}); {dropped} rows were dropped."
+    ]
+
+
+def _longest_rise(time: np.ndarray) -> np.ndarray:
+    """Indices of the longest strictly rising subsequence (patience sorting)."""
+    tails: list[float] = []  # smallest last value of a rise of each length
+    last: list[int] = []  # where it is
+    before = np.full(len(time), -1)
+    for i, value in enumerate(time.tolist()):
+        length = bisect_left(tails, value)
+        if length == len(tails):
+            tails.append(value)
+            last.append(i)
+        else:
+            tails[length], last[length] = value, i
+        before[i] = last[length - 1] if length else -1
+    rise = np.empty(len(last), int)
+    at = last[-1]
+    for k in range(len(last) - 1, -1, -1):
+        rise[k], at = at, int(before[at])
+    return rise
+
+
+def _unsteady(name: str, time: np.ndarray) -> list[str]:
+    """Sentences on gaps and jitter."""
+    step = np.diff(time)
+    period = float(np.median(step))
+    notes = []
+    gaps = np.flatnonzero(step > GAP * period)
+    if len(gaps):
+        worst = int(np.argmax(step))
+        notes.append(
+            f"{name}: {len(gaps)} gaps longer than {GAP:g} periods of {period:.4g} s, the longest {step[worst]:.4g} s at "
+            f"{time[worst]:.3f} s; they were left as gaps."
+        )
+    off = float(np.quantile(np.abs(step - period), 0.95))
+    if off > _JITTER * period:
+        notes.append(
+            f"{name}: the time between rows jitters: {period:.4g} s usually, one row in twenty off by {off:.2g} s or more."
+        )
+    return notes

@@ -1,0 +1,115 @@
+"""CSV and its kin: comma, semicolon, tab or blanks between the cells, with a header or without."""
+
+import re
+from pathlib import Path
+
+import polars as pl
+
+from sensorfault.logs.dialect import Dialect, is_number, missing, sniff
+from sensorfault.logs.source import Source
+from sensorfault.logs.table import LogError
+
+MISSING = ["NA", "N/A", "NULL", "null", "None", "none", "-", ""]
+_SAMPLE_ROWS = 1000
+_EXACT_IN_FLOAT = 2**53
+
+
+def read_csv(path: Path) -> Source:
+    """One text table. Columns of a headerless file are called c1, c2, ...
+
+    Raises:
+        LogError: empty, not text, or not a table.
+    """
+    dialect = sniff(path)
+    content, skip = _content(path, dialect)
+    try:
+        frame = _parse(content, dialect, skip, _dtypes(content, dialect, skip))
+    except pl.exceptions.PolarsError:
+        # Some cell is not what the first rows promised: read all as text and keep what is not a number as it is.
+        frame = _numbers(_parse_text(path, content, dialect, skip))
+    blank = frame.select(pl.all_horizontal(pl.all().is_null())).to_series()
+    notes = []
+    if dialect.first_cut:
+        notes.append(f"{path.name}: the first line is cut off and was left out.")
+    if _last_cut(path, dialect, frame):
+        frame, blank = frame[:-1], blank[:-1]
+        notes.append(f"{path.name}: the last line is cut off and was left out.")
+    if blank.any():
+        frame = frame.filter(~blank)
+    return Source(path, frame, first_line=dialect.skip + 1, notes=tuple(notes))
+
+
+def _content(path: Path, dialect: Dialect) -> tuple[Path | bytes, int]:
+    """The file itself, or its bytes with one comma for each run of blanks: polars wants one delimiter byte."""
+    if dialect.delimiter is not None:
+        return path, dialect.skip
+    lines = path.read_bytes().splitlines()[dialect.skip :]
+    return b"\n".join(re.sub(rb"[ \t]+", b",", line.strip()) for line in lines), 0
+
+
+def _parse(
+    content: Path | bytes, dialect: Dialect, skip: int, dtypes: list[type[pl.DataType]], rows: int | None = None
+) -> pl.DataFrame:
+    return pl.read_csv(
+        content,
+        has_header=False,
+        skip_lines=skip,
+        separator=dialect.delimiter or ",",
+        new_columns=list(dialect.names),
+        schema_overrides=dict(zip(dialect.names, dtypes, strict=True)),
+        comment_prefix=dialect.comment,
+        decimal_comma=dialect.decimal_comma and dialect.delimiter is not None,
+        null_values=MISSING,
+        truncate_ragged_lines=True,
+        encoding="utf8-lossy",
+        n_rows=rows,
+        glob=False,
+    )
+
+
+def _dtypes(content: Path | bytes, dialect: Dialect, skip: int) -> list[type[pl.DataType]]:
+    """Float for numbers; integers stay integers only where a float would round them (nanoseconds since 1970)."""
+    sample = _parse(content, dialect, skip, [pl.String] * len(dialect.names), _SAMPLE_ROWS)
+    return [_dtype(column) for column in sample]
+
+
+def _dtype(column: pl.Series) -> type[pl.DataType]:
+    cells = [cell.strip() for cell in column.drop_nulls()]
+    cells = [cell for cell in cells if not missing(cell)]
+    if not all(is_number(cell) for cell in cells):
+        return pl.String
+    whole = all(re.fullmatch(r"[+-]?\d{1,18}", cell) for cell in cells)
+    return pl.Int64 if cells and whole and any(abs(int(cell)) > _EXACT_IN_FLOAT for cell in cells) else pl.Float64
+
+
+def _parse_text(path: Path, content: Path | bytes, dialect: Dialect, skip: int) -> pl.DataFrame:
+    try:
+        return _parse(content, dialect, skip, [pl.String] * len(dialect.names))
+    except pl.exceptions.PolarsError as error:
+        reason = str(error).splitlines()[0]
+        raise LogError(
+            f"{path}: the lines do not make a table of {len(dialect.names)} columns ({reason}); "
+            "give every line the same number of cells."
+        ) from None
+
+
+def _numbers(frame: pl.DataFrame) -> pl.DataFrame:
+    """Text columns become numbers where every cell is one."""
+    columns = []
+    for column in frame:
+        text = column.str.strip_chars()
+        text = text.set(text.is_in(MISSING), None)
+        number = text.cast(pl.Float64, strict=False)
+        columns.append(number if number.null_count() == text.null_count() else text)
+    return pl.DataFrame(columns)
+
+
+def _last_cut(path: Path, dialect: Dialect, frame: pl.DataFrame) -> bool:
+    """Whether the file ends inside its last line: power was lost, and the last cell may be half a number."""
+    with path.open("rb") as file:
+        size = file.seek(0, 2)
+        file.seek(max(0, size - (1 << 16)))
+        tail = file.read().decode("utf-8", "replace")
+    if tail.endswith(("\n", "\r")) or len(frame) < 2:
+        return False
+    return len(dialect.split(tail.splitlines()[-1])) < len(dialect.names)

@@ -1,0 +1,109 @@
+"""Describe an unknown log: which columns are which sensor, in what unit, held or new. Every guess gives its reason."""
+
+import os
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sensorfault.logs.clock import Clock, read_clock
+from sensorfault.logs.formats import read_source
+from sensorfault.logs.guess_columns import measurements
+from sensorfault.logs.guess_sensors import guess_sensors
+from sensorfault.logs.guess_time import guess_time
+from sensorfault.logs.place import Where, files_of
+from sensorfault.logs.table import LogError
+from sensorfault.logs.vehicle import FileEntry, SensorEntry, VehicleFile
+
+_ROWS = 500_000  # a guess looks at so many rows from the beginning
+
+
+@dataclass(frozen=True)
+class _Guess:
+    path: Path
+    columns: tuple[str, ...]
+    file: FileEntry
+    clock: Clock
+    sensors: list[SensorEntry]
+
+
+def guess(path: Where) -> VehicleFile:
+    """Describe a log from its names and values.
+
+    Raises:
+        LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
+    """
+    files, guesses, notes = files_of(path), [], []
+    for file in files:
+        try:
+            guesses.append(_guess_file(file))
+        except LogError as error:
+            if len(files) == 1:
+                raise
+            notes.append(f"Left out: {error}")
+    if not guesses:
+        raise LogError(
+            f"{path}: none of its {len(files)} files is a log; the first: {notes[0].removeprefix('Left out: ')}"
+        )
+    _refuse_several_drives(guesses)
+    names = ["log"] if len(guesses) == 1 else _short_names([one.path for one in guesses])
+    taken = [sensor.name for one in guesses for sensor in one.sensors]
+    sensors = [
+        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else f"{name}_{sensor.name}")
+        for one, name in zip(guesses, names, strict=True)
+        for sensor in one.sensors
+    ]
+    entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
+    name = Path(files[0] if len(files) == 1 else files[0].parent).stem
+    return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *_untied(guesses)))
+
+
+def _guess_file(path: Path) -> _Guess:
+    source = read_source(path)
+    head = replace(source, frame=source.frame.head(_ROWS))
+    time, unit, why = guess_time(head)
+    clock = read_clock(head, time, unit)
+    columns, left_out = measurements(head, time, clock)
+    if not columns:
+        raise LogError(
+            f"{path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."
+        )
+    tag = path.with_name(path.name + ".tag")
+    has_tag = tag.is_file() and not clock.is_unix
+    file = FileEntry(
+        path=path.name, time=time, unit=unit, tag=tag.name if has_tag else None, why=why, left_out=tuple(left_out)
+    )
+    return _Guess(path, tuple(source.frame.columns), file, clock, guess_sensors(head, columns, clock))
+
+
+def _refuse_several_drives(guesses: list[_Guess]) -> None:
+    """Files with the same columns are one log only if their clocks say that they were written at one time."""
+    for i, one in enumerate(guesses):
+        for other in guesses[:i]:
+            start = max(one.clock.zero_s, other.clock.zero_s)
+            end = min(guess.clock.zero_s + float(guess.clock.time[-1]) for guess in (one, other))
+            together = one.clock.is_unix and other.clock.is_unix and start < end
+            if one.columns == other.columns and not together:
+                raise LogError(
+                    f"{one.path.parent}: {other.path.name} and {one.path.name} have the same columns and look like two drives; "
+                    "name the files of one drive."
+                )
+
+
+def _untied(guesses: list[_Guess]) -> list[str]:
+    """A sentence for each file whose clock has nothing to do with the others'."""
+    tied = [one for one in guesses if one.clock.is_unix or one.file.tag]
+    return [
+        f"{one.path.name}: its clock is not Unix time like the others'; set offset_s in vehicle.toml."
+        for one in guesses
+        if tied and one not in tied
+    ]
+
+
+def _short_names(paths: list[Path]) -> list[str]:
+    """File names without what they share and without numbers, where they stay apart."""
+    stems = [path.stem for path in paths]
+    start = os.path.commonprefix(stems).rfind("_") + 1
+    short = [re.sub(r"\W+", "_", re.sub(r"(_\d+)+$", "", stem[start:])).strip("_").lower() for stem in stems]
+    if len(set(short)) == len(short) and all(short):
+        return short
+    return [re.sub(r"\W+", "_", path.name).lower() for path in paths]

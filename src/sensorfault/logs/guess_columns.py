@@ -1,0 +1,92 @@
+"""Which columns measure something, and what."""
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+import polars as pl
+from jaxtyping import Float
+
+from sensorfault.logs.clock import Clock
+from sensorfault.logs.source import Source
+from sensorfault.logs.table import LogError
+from sensorfault.logs.units import STANDARD_GRAVITY
+from sensorfault.logs.words import Meaning, read_name
+
+_FEW = 16
+_STEADY = 0.3  # relative spread below which three axes have a steady length
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column that measures something; `value` as in the file, NaN where there is none."""
+
+    name: str
+    meaning: Meaning
+    value: Float[np.ndarray, " T"]
+
+
+def measurements(source: Source, time: str, clock: Clock) -> tuple[list[Column], list[tuple[str, str]]]:
+    """Columns that measure something, and the others with the reason why not."""
+    columns, left_out = [], []
+    for name in source.frame.columns:
+        if name == time:
+            continue
+        meaning = read_name(name)
+        if meaning.kind == "time":
+            left_out.append((name, "another time, or bookkeeping of it"))
+        elif meaning.kind == "quality":
+            left_out.append((name, "quality or state, no measurement of motion"))
+        else:
+            try:
+                value = source.column(name).cast(pl.Float64).to_numpy()[clock.rows]
+            except LogError:
+                left_out.append((name, "holds text"))
+                continue
+            column = Column(name, meaning, np.where(np.isinf(value), np.nan, value))
+            reason = _no_measurement(column)
+            if reason:
+                left_out.append((name, reason))
+            else:
+                columns.append(column)
+    headerless = bool(columns) and all(re.fullmatch(r"c\d+", column.name) for column in columns)
+    return _by_value(columns) if headerless else columns, left_out
+
+
+def _no_measurement(column: Column) -> str:
+    known = column.value[np.isfinite(column.value)]
+    if not len(known):
+        return "holds no value at all"
+    if (known == known[0]).all():
+        return "constant"
+    if not column.meaning.kind and (known == np.round(known)).all():
+        if len(np.unique(known)) <= _FEW:
+            return "few whole numbers: a state or a counter"
+        if (np.diff(known) >= 0).all():
+            return "only rises: a counter"
+    return ""
+
+
+def _by_value(columns: list[Column]) -> list[Column]:
+    """Columns without names: three neighbours whose length is gravity are an accelerometer, the next three a gyro."""
+    left, named, gyro_due = list(columns), [], False
+    while left:
+        triple = left[:3]
+        if len(triple) == 3 and _is_gravity(triple):
+            kind, gyro_due = "accelerometer", True
+        elif len(triple) == 3 and (gyro_due or (len(left) >= 6 and _is_gravity(left[3:6]))):
+            kind, gyro_due = "gyro", False
+        else:
+            named.append(left.pop(0))
+            continue
+        named += [replace(c, meaning=Meaning(kind, axis, "", "")) for c, axis in zip(triple, "xyz", strict=True)]
+        left = left[3:]
+    return named
+
+
+def _is_gravity(triple: list[Column]) -> bool:
+    """Whether the usual length of three columns is 1 g, 9.8 m/s^2 or 1000 mg, and steady."""
+    length = np.linalg.norm(np.column_stack([column.value for column in triple]), axis=1)
+    middle = float(np.nanmedian(length))
+    steady = float(np.nanmedian(np.abs(length - middle))) < _STEADY * middle
+    return steady and any(0.8 < middle / gravity < 1.25 for gravity in (1.0, STANDARD_GRAVITY, 1000.0))

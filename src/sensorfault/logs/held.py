@@ -1,0 +1,63 @@
+"""Zero-order hold: a file that repeats a sensor's last measurement until the next. A repeated row says nothing."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+HELD_SHARE = 0.3  # a sensor is held if more than this share of its measurements is repeated in the next row
+
+
+def repeats(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:
+    """Rows in which every channel is what it was in the row before that had any value."""
+    present = np.flatnonzero(np.isfinite(value).any(axis=1))
+    same = np.zeros(len(value), bool)
+    if len(present) > 1:
+        now, before = value[present[1:]], value[present[:-1]]
+        same[present[1:]] = ((now == before) | (np.isnan(now) & np.isnan(before))).all(axis=1)
+    return same
+
+
+def share_repeated(value: Float[np.ndarray, "T C"]) -> float:
+    """Share of the rows with a value that only repeat the row before."""
+    present = int(np.isfinite(value).any(axis=1).sum())
+    return float(repeats(value).sum()) / present if present else 0.0
+
+
+def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
+    """Whether the rows are a held sensor's: many measurements last for several rows.
+
+    Measurements are counted, not rows: one long standstill (a parked car, an airspeed of zero) holds nothing.
+    """
+    start = np.flatnonzero(~repeats(value) & np.isfinite(value).any(axis=1))
+    return len(start) > 2 and float(np.mean(np.diff(start) > 1)) > HELD_SHARE
+
+
+def changes(epoch: Float[np.ndarray, " T"]) -> Bool[np.ndarray, " T"]:
+    """Rows in which an epoch column holds another number than in the row before; NaN: nothing has arrived yet."""
+    known = np.isfinite(epoch)
+    new = known.copy()
+    new[1:] &= ~(known[:-1] & (epoch[1:] == epoch[:-1]))
+    return new
+
+
+def fresh_rows(
+    value: Float[np.ndarray, "T C"], held: bool, epoch: Float[np.ndarray, " T"] | None
+) -> Bool[np.ndarray, "T C"]:
+    """Which values are new measurements.
+
+    Not held: every value. Held: where the epoch column changes, or, without one, where any channel changed.
+    """
+    finite = np.isfinite(value)
+    if epoch is not None:
+        return finite & changes(epoch)[:, None]
+    if held:
+        return finite & ~repeats(value)[:, None]
+    return finite
+
+
+def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"]) -> float:
+    """Median time between new measurements [s]; NaN with fewer than two.
+
+    A long standstill, where a held value cannot change, is one gap among many and does not move the median.
+    """
+    at = time[fresh.any(axis=1)]
+    return float(np.median(np.diff(at))) if len(at) > 1 else float("nan")

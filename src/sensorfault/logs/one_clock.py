@@ -1,0 +1,103 @@
+"""Several files on one clock: the ticks are the fastest file's, and nothing arrives before its time."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.logs.clock import GAP
+from sensorfault.logs.stream import Stream
+
+SAME_S = 1e-6  # two clocks' readings this near are one time
+Resample = Literal["hold", "linear"]
+
+
+@dataclass(frozen=True)
+class OneClock:
+    """T ticks; `value` and `fresh` have the streams' channels side by side. `zero_s`: the clock's reading at time 0."""
+
+    zero_s: float
+    time: Float[np.ndarray, " T"]
+    value: Float[np.ndarray, "T C"]
+    fresh: Bool[np.ndarray, "T C"]
+    notes: tuple[str, ...] = ()
+
+
+def put_on_one_clock(streams: list[Stream], resample: Resample = "hold") -> OneClock:
+    """Put every stream on the ticks of the fastest.
+
+    A slower stream's row goes to the first tick at or after its own time; of two rows for one tick the later stays.
+    Where the fastest file has a gap, ticks of its usual period go on, so that its silence can be noticed.
+    """
+    if len(streams) == 1 and resample == "hold":
+        (only,) = streams
+        return OneClock(only.zero_s, only.time, only.value, only.fresh)
+    fastest = min(streams, key=lambda stream: stream.period_s)
+    ticks = _filled(fastest.time, fastest.period_s) if len(streams) > 1 else fastest.time
+    values, marks, notes = [], [], []
+    for stream in streams:
+        time = stream.time + (stream.zero_s - fastest.zero_s)
+        if resample == "linear":
+            value, fresh = _interpolated(ticks, time, stream)
+        else:
+            value, fresh, note = _placed(ticks, time, stream, fastest)
+            notes += note
+        values.append(value)
+        marks.append(fresh)
+    return OneClock(fastest.zero_s, ticks, np.concatenate(values, axis=1), np.concatenate(marks, axis=1), tuple(notes))
+
+
+def _filled(time: np.ndarray, period: float) -> np.ndarray:
+    """The ticks, and new ones inside each gap."""
+    step = np.diff(time)
+    pieces = [time]
+    for i in np.flatnonzero(step > GAP * period):
+        count = round(step[i] / period) - 1
+        pieces.append(time[i] + step[i] * np.arange(1, count + 1) / (count + 1))
+    return np.sort(np.concatenate(pieces))
+
+
+def _placed(
+    ticks: np.ndarray, time: np.ndarray, stream: Stream, fastest: Stream
+) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Each row on the first tick at or after its time."""
+    shape = (len(ticks), stream.value.shape[1])
+    value, fresh = np.full(shape, np.nan), np.zeros(shape, bool)
+    # The fastest's own rows lie on ticks exactly; what came long before the first tick is no news at it.
+    tick = np.searchsorted(ticks, time - SAME_S, side="left")
+    inside = (tick < len(ticks)) & (time > ticks[0] - stream.period_s)
+    rows = np.flatnonzero(inside)
+    outside = len(time) - len(rows)
+    last = np.append(tick[rows][1:] != tick[rows][:-1], True) if len(rows) else np.zeros(0, bool)
+    later = rows[last]
+    value[tick[later]], fresh[tick[later]] = stream.value[later], stream.fresh[later]
+    # A row that another pushed off its tick was still news.
+    np.logical_or.at(fresh, tick[rows], stream.fresh[rows])
+    fresh &= np.isfinite(value)
+    notes = []
+    if outside:
+        notes.append(
+            f"{stream.name}: {outside} rows lie before the first or after the last row of {fastest.name}, "
+            "whose rows are the log's ticks, and were left out."
+        )
+    if len(rows) > len(later):
+        notes.append(
+            f"{stream.name}: {len(rows) - len(later)} rows fell on the same tick as the row after them and gave way to it."
+        )
+    return value, fresh, notes
+
+
+def _interpolated(ticks: np.ndarray, time: np.ndarray, stream: Stream) -> tuple[np.ndarray, np.ndarray]:
+    """Straight lines between new measurements; nothing beyond the ends or across a gap."""
+    value = np.full((len(ticks), stream.value.shape[1]), np.nan)
+    for i in range(value.shape[1]):
+        rows = np.flatnonzero(stream.fresh[:, i])
+        if len(rows) < 2:
+            continue
+        at = time[rows]
+        value[:, i] = np.interp(ticks, at, stream.value[rows, i], left=np.nan, right=np.nan)
+        step = np.diff(at)
+        after = np.clip(np.searchsorted(at, ticks, side="left"), 1, len(at) - 1)
+        value[(step[after - 1] > GAP * np.median(step)) & (ticks != at[after]) & (ticks != at[after - 1]), i] = np.nan
+    return value, np.isfinite(value)

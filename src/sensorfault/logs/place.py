@@ -1,0 +1,85 @@
+"""Where a log's files lie, and which entry of the vehicle file describes which."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from sensorfault.logs.formats import READERS
+from sensorfault.logs.table import LogError
+from sensorfault.logs.vehicle import FileEntry, VehicleFile
+
+Where = str | Path | Sequence[str | Path]
+VEHICLE = "vehicle.toml"
+
+
+def files_of(path: Where) -> list[Path]:
+    """The files of a log, by name: the one, the several, or the readable ones in the folder.
+
+    Raises:
+        LogError: something is not there, or the folder has no readable file.
+    """
+    if not isinstance(path, str | Path):
+        files = [Path(one) for one in path]
+        if not files:
+            raise LogError("no file was named; name a file, a folder or several files of one drive.")
+    elif Path(path).is_dir():
+        files = sorted(file for file in Path(path).iterdir() if file.is_file() and file.suffix.lower() in READERS)
+        if not files:
+            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(READERS)} there.")
+    else:
+        files = [Path(path)]
+    for file in files:
+        if not file.exists():
+            raise LogError(f"{file}: there is no such file or folder; look at the path.")
+    return files
+
+
+def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> VehicleFile | None:
+    """The description named, or the one beside the log, or None.
+
+    Beside `drive.csv` that is `drive.vehicle.toml`, or a `vehicle.toml` which does not name another file.
+    """
+    if isinstance(vehicle, VehicleFile):
+        return vehicle
+    if vehicle is not None:
+        return VehicleFile.read(vehicle)
+    files = files_of(path)
+    if isinstance(path, str | Path) and Path(path).is_dir():
+        beside = Path(path) / VEHICLE
+        return VehicleFile.read(beside) if beside.is_file() else None
+    own = files[0].with_suffix(".vehicle.toml")
+    if len(files) == 1 and own.is_file():
+        return VehicleFile.read(own)
+    beside = files[0].parent / VEHICLE
+    if not beside.is_file():
+        return None
+    found = VehicleFile.read(beside)
+    names = {file.name for file in files}
+    return found if all(entry.path is None or Path(entry.path).name in names for entry in found.files) else None
+
+
+def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]]:
+    """Each described file with the file that it describes.
+
+    One description and one file belong together whatever its name, so that one vehicle.toml serves many drives.
+
+    Raises:
+        LogError: a described file is not among those of the log.
+    """
+    files = files_of(path)
+    if len(vehicle.files) == 1 and len(files) == 1:
+        return [(vehicle.files[0], files[0])]
+    pairs = []
+    for entry in vehicle.files:
+        if entry.path is None:
+            raise LogError(
+                f'{vehicle.name}: [file.{entry.name}] has no path, but the log is of several files; write path = "...".'
+            )
+        match = [file for file in files if file.name == Path(entry.path).name]
+        if not match:
+            listed = ", ".join(file.name for file in files)
+            raise LogError(
+                f"{vehicle.name}: [file.{entry.name}] path = '{entry.path}' is not among {listed}; "
+                "name the folder of the log, or correct the path."
+            )
+        pairs.append((entry, match[0]))
+    return pairs

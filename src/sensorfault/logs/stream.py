@@ -1,0 +1,150 @@
+"""One file of a log: its sensors' measurements in SI on the file's own clock."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from jaxtyping import Bool, Float
+
+from sensorfault.logs.clock import Clock, read_clock
+from sensorfault.logs.held import fresh_rows, looks_held, share_repeated, usual_period_s
+from sensorfault.logs.rtklib import read_tag
+from sensorfault.logs.source import Source
+from sensorfault.logs.table import Channel, LogError, Sensor
+from sensorfault.logs.units import to_si
+from sensorfault.logs.vehicle import ChannelEntry, FileEntry, SensorEntry
+
+
+@dataclass(frozen=True)
+class Stream:
+    """T rows of one file, C channels of its sensors. `zero_s`: the reading of the common clock at time 0 [s]."""
+
+    name: str
+    zero_s: float
+    time: Float[np.ndarray, " T"]
+    value: Float[np.ndarray, "T C"]
+    fresh: Bool[np.ndarray, "T C"]
+    channels: tuple[Channel, ...]
+    sensors: tuple[Sensor, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def period_s(self) -> float:
+        """The usual time between two rows [s]."""
+        return float(np.median(np.diff(self.time)))
+
+
+def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...]) -> Stream:
+    """The described sensors of one file.
+
+    Raises:
+        LogError: no time, a column that is missing, holds text or holds nothing.
+    """
+    column, unit = file.time or source.time, source.unit or file.unit
+    if column is None:
+        known = ", ".join(source.frame.columns)
+        raise LogError(
+            f'{source.path}: [file.{file.name}] names no time column; write time = "..." with one of {known}.'
+        )
+    clock = read_clock(source, column, unit)
+    zero, rate = clock.zero_s + file.offset_s, 1.0
+    notes = [*source.notes, *clock.notes]
+    if file.tag is not None:
+        counter = clock.zero_s + clock.time
+        start, rate = read_tag(source.path.parent / file.tag, source.path, counter, clock.rows + source.first_line)
+        zero = start + rate * clock.zero_s + file.offset_s
+        notes.append(
+            f"{source.path.name}: {file.tag} ties its counter to GPS time; the counter runs {abs(rate - 1) * 1e6:.1f} ppm "
+            f"{'slow' if rate > 1 else 'fast'}, which was corrected."
+        )
+    time = clock.time * rate
+    columns, marks, gaps = [], [], _Gaps(source)
+    described = []
+    for sensor in sensors:
+        value = np.column_stack([_channel(source, channel, clock, gaps) for channel in sensor.channels])
+        fresh = _fresh(source, sensor, value, clock)
+        period = sensor.period_s or usual_period_s(time, fresh)
+        described.append(Sensor(sensor.name, period, sensor.held, sensor.watch))
+        notes += _held_note(source.path.name, sensor, value, period)
+        columns.append(value)
+        marks.append(fresh)
+    channels = tuple(Channel(c.name, s.name, c.unit) for s in sensors for c in s.channels)
+    return Stream(
+        source.path.name,
+        zero,
+        time,
+        np.concatenate(columns, axis=1),
+        np.concatenate(marks, axis=1),
+        channels,
+        tuple(described),
+        (*notes, *gaps.notes()),
+    )
+
+
+class _Gaps:
+    """Gathers what cells hold no usable number, to say it in two sentences for the whole file."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.found: dict[str, list[tuple[str, int, int]]] = {}
+
+    def see(self, what: str, column: str, bad: np.ndarray) -> None:
+        if bad.any():
+            self.found.setdefault(what, []).append((column, int(bad.sum()), int(np.argmax(bad))))
+
+    def notes(self) -> list[str]:
+        said = []
+        for what, entries in self.found.items():
+            names = ", ".join(f"'{column}' ({count})" for column, count, _ in entries)
+            row = min(row for _, _, row in entries)
+            place = f"line {row + self.source.first_line}" if self.source.first_line else f"row {row + 1}"
+            said.append(f"{self.source.path.name}: cells {what} in {names}, first in {place}; read as no value.")
+        return said
+
+
+def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps) -> np.ndarray:
+    """One column in SI on the kept rows, NaN where it holds no value."""
+    value = source.column(channel.column).cast(pl.Float64).to_numpy()
+    infinite, empty = np.isinf(value), np.isnan(value)
+    gaps.see("are infinite", channel.column, infinite)
+    gaps.see("are empty", channel.column, empty)
+    absent = infinite | empty
+    if channel.missing is not None:
+        absent |= value == channel.missing
+    if absent.all():
+        raise LogError(f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml.")
+    si = to_si(value, channel.unit)
+    return np.where(absent, np.nan, si)[clock.rows]
+
+
+def _fresh(source: Source, sensor: SensorEntry, value: np.ndarray, clock: Clock) -> np.ndarray:
+    """Fresh marks of one sensor; a channel's own epoch column goes before the sensor's."""
+    fresh = fresh_rows(value, sensor.held, _epoch(source, sensor.epoch, clock))
+    for i, channel in enumerate(sensor.channels):
+        if channel.epoch is not None:
+            fresh[:, i : i + 1] = fresh_rows(value[:, i : i + 1], True, _epoch(source, channel.epoch, clock))
+    return fresh
+
+
+def _epoch(source: Source, name: str | None, clock: Clock) -> np.ndarray | None:
+    """An epoch column as numbers that change when it does."""
+    if name is None:
+        return None
+    column = source.frame[name] if name in source.frame.columns else source.column(name)
+    if not column.dtype.is_numeric():
+        column = column.rle_id().set(column.is_null(), None)
+    return column.cast(pl.Float64).fill_null(np.nan).to_numpy()[clock.rows]
+
+
+def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, period: float) -> list[str]:
+    share = share_repeated(value)
+    if sensor.held:
+        return [
+            f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat, a measurement comes every {period:.3g} s."
+        ]
+    if looks_held(value):
+        return [
+            f"{name}: {share:.0%} of the rows of sensor '{sensor.name}' repeat the row before, yet count as measurements; "
+            f"if the file holds the last one, write held = true in [sensor.{sensor.name}]."
+        ]
+    return []

@@ -1,0 +1,125 @@
+"""What a column's name says: kind of sensor, axis, unit."""
+
+import re
+from dataclasses import dataclass
+
+from sensorfault.logs.units import known
+
+# Names of what is no measurement of motion: quality, state, bookkeeping. It may be added by hand.
+_QUALITY = re.compile(
+    r"(^|_)([ghptv]dop|dop|ep[ehv]|sd[neu]+|sdv[neu]+|std|stddev|sigma|cov(ariance)?|var(iance)?|accuracy|acc_?est|"
+    r"fix|fix_?type|fix_?quality|quality|q|ns|sats?|satellites?|numsats?|num_?sv|ratio|age|confidence|noise|jamming|"
+    r"rssi|nsd|snr|cn0|valid|ok|status|state|mode|flags?|health|error|errors|error_?count|count|counter|id|seq|"
+    r"progress|week|leap|cycle|enabled|present|delta|reset|ref|max|min|terrain|setpoint|sp)(_|$)"
+)
+_TIME = re.compile(
+    r"(^|_)(time|timestamp|stamp|t|tow|gps_?tow|itow|epoch|utc|date|datetime|millis|micros|msec|usec|clock|"
+    r"time_?startup|seconds|secs?)(_|$)|^time|time$|timestamp"
+)
+_AXIS = r"(?P<axis>[xyz]|[nedu]|north|east|down|up|lateral|longitudinal|vertical|forward|left|right)"
+
+# (kind, pattern on the normalised name); the first that matches wins.
+_KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
+    (kind, re.compile(pattern))
+    for kind, pattern in (
+        ("gyro", r"(^|_)(?P<axis>roll|pitch|yaw)_?(rate|speed)$"),
+        ("gyro", rf"(^|_)(gyros?|gyr|gyroscope|omega|ang(ular)?_?(rate|vel|velocity|speed)|w)_?{_AXIS}$"),
+        ("accelerometer", rf"(^|_)(a|acc|accel|acceleration|accelerometer|specific_force)_?{_AXIS}$"),
+        ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|compass)_?{_AXIS}$"),
+        ("quaternion", r"(^|_)(q|quat|quaternion|orientation)_?(?P<axis>[0-3wxyz])$"),
+        ("attitude", r"(^|_)(?P<axis>roll|pitch)$"),
+        ("heading", r"(^|_)(?P<axis>yaw|heading|course|cog|hdt|hdg|track|azimuth|orientation)$"),
+        ("airspeed", r"(^|_)(?P<axis>([a-z]+_)?air_?speed(_[a-z]+)?|ias|tas)$"),
+        ("velocity", rf"(^|_)(v|vel|velocity|wind_?speed)_?{_AXIS}$"),
+        ("speed", r"(^|_)(?P<axis>speed|sog|ground_?speed|vel|velocity|wheel_?speed(_[a-z]+)?)$"),
+        ("position", r"(^|_)(?P<axis>lat|latitude|lon|lng|longitude)$"),
+        ("height", r"(^|_)(?P<axis>alt|altitude|height|hgt|elevation|altitude_filtered|orthometric_height)(_|$)"),
+        ("local_position", rf"(^|_)(pos|position)_?{_AXIS}$|^(field_)?(?P<alone>[xyz])$"),
+        ("range", r"(^|_)(dist|distance|range)(_?(?P<axis>[a-z]*\d+)|_from_tag|_bottom)?$"),
+        ("depth", r"(^|_)(?P<axis>depth)$"),
+        ("barometer", r"(^|_)(?P<axis>pres|pressure|baro)(_|$)"),
+        ("temperature", r"(^|_)(?P<axis>temp|temperature)(_|$)"),
+    )
+)
+_CHANNEL = {
+    "roll": "roll", "pitch": "pitch", "yaw": "yaw", "lat": "latitude", "lon": "longitude", "lng": "longitude",
+    "alt": "altitude", "hgt": "height", "cog": "course", "hdt": "heading", "hdg": "heading", "sog": "speed",
+    "n": "north", "e": "east", "d": "down", "u": "up", "vel": "speed", "velocity": "speed", "pres": "pressure",
+    "temp": "temperature", "baro": "pressure",
+}  # fmt: skip
+_GYRO_AXIS = {"roll": "x", "pitch": "y", "yaw": "z"}
+
+# Units written as the end of a name.
+_UNIT_ENDINGS = (
+    ("m_s2", "m/s^2"), ("m_s_2", "m/s^2"), ("mps2", "m/s^2"), ("rad_s", "rad/s"), ("radps", "rad/s"),
+    ("deg_s", "deg/s"), ("degps", "deg/s"), ("dps", "deg/s"), ("m_s", "m/s"), ("mps", "m/s"), ("km_h", "km/h"),
+    ("kmh", "km/h"), ("kph", "km/h"), ("knots", "kn"), ("rad", "rad"), ("degrees", "deg"), ("deg", "deg"),
+    ("hpa", "hPa"), ("kpa", "kPa"), ("pa", "Pa"), ("celsius", "degC"), ("degc", "degC"), ("mm", "mm"), ("ft", "ft"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """`kind`: of sensor, "quality", "time" or "" for unknown; `stem`: what else the name says, e.g. "uncomp"."""
+
+    kind: str
+    axis: str
+    stem: str
+    unit: str
+
+
+def read_name(column: str) -> Meaning:
+    """What a column's name says."""
+    plain, unit = _split_unit(column)
+    name = "_".join(_tokens(plain))
+    bare = name
+    for ending, spelled in _UNIT_ENDINGS:
+        if name.endswith("_" + ending):
+            bare, unit = name[: -len(ending) - 1], unit or spelled
+            break
+    if _TIME.search(bare) and not re.search(r"(^|_)(lat|lon)", bare):
+        return Meaning("time", bare, "", unit)
+    for kind, pattern in _KINDS:
+        match = pattern.search(bare)
+        if match and not _QUALITY.search(bare):
+            groups = match.groupdict()
+            axis = groups.get("axis") or groups.get("alone") or kind
+            return Meaning(kind, _channel(kind, axis), _stem(bare, match), unit)
+    if _QUALITY.search(bare):
+        return Meaning("quality", bare, "", unit)
+    return Meaning(*_by_unit(bare, unit), unit)
+
+
+def _channel(kind: str, axis: str) -> str:
+    return _GYRO_AXIS.get(axis, axis) if kind == "gyro" else _CHANNEL.get(axis, axis)
+
+
+def _stem(name: str, match: re.Match[str]) -> str:
+    return (name[: match.start()] + name[match.end() :]).strip("_")
+
+
+def _by_unit(name: str, unit: str) -> tuple[str, str, str]:
+    """Kind, axis and stem of a name like "dvl_x" whose unit says what it measures."""
+    match = re.search(rf"_{_AXIS}$", name)
+    kind = {"m/s": "velocity", "m/s^2": "accelerometer", "rad/s": "gyro", "deg/s": "gyro", "g": "accelerometer"}.get(
+        unit, ""
+    )
+    if match and kind:
+        return kind, _channel(kind, match["axis"]), name[: match.start()]
+    return "", name, ""
+
+
+def _split_unit(column: str) -> tuple[str, str]:
+    """The name and the unit that stands in brackets behind it; `q[0]` has an index, not a unit."""
+    match = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", column)
+    if match is None or match[1].strip().isdigit():
+        return column, ""
+    unit = match[1].strip()
+    unit = unit if known(unit) else unit[:1].lower() + unit[1:]
+    rest = re.sub(r"\([^()]*\)", " ", column[: match.start()])
+    return rest, unit if known(unit) else ""
+
+
+def _tokens(name: str) -> list[str]:
+    spaced = re.sub(r"([a-z])([A-Z])", r"\1_\2", name)
+    return [token for token in re.split(r"[^a-z0-9]+", spaced.lower()) if token]
