@@ -1,0 +1,47 @@
+"""One monitor, and what the laws must know of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sensorfault.monitor.monitor import Monitor, MonitorState
+from sensorfault.types import Sample
+
+
+def limits_learned(state: MonitorState) -> Any:
+    """The states of the thresholds."""
+    return [threshold for _, threshold in state.branches]
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A fitted monitor and a healthy log that it has not seen, about 400 samples; the laws do the damage.
+
+    The monitor is warm in the second half of the log. `lie` [SI] added to one fresh value there is named, and gated, at
+    once. `back_s` after a dropout, a gap in the clock or a long fault the verdicts are again those of the healthy run.
+    """
+
+    name: str
+    monitor: Monitor
+    rows: Sample
+    lie: np.ndarray
+    back_s: float
+    learned: Callable[[MonitorState], Any] = limits_learned  # references, thresholds, weights
+    permuted: Callable[[np.ndarray], Monitor] | None = None  # the same monitor, for channels in this order
+    quiet: Sample | None = None  # healthy logs with a leading axis, to count false alarms on
+    rate: float | None = None  # ... and the rate of them that each channel was designed for
+
+    @property
+    def channels(self) -> int:
+        return len(self.monitor.owner)
+
+    @property
+    def hold_s(self) -> np.ndarray:
+        """How long a verdict may stand without a new measurement [s]."""
+        decided = getattr(self.monitor.decision, "hold_s", np.zeros(self.channels))
+        return np.maximum(np.asarray(decided), np.asarray(self.monitor.hold_s))
+
+    def __str__(self) -> str:
+        return self.name

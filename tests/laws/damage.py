@@ -1,0 +1,59 @@
+"""What is done to a healthy log. Spans are slices of rows; all of it happens in the warm second half."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from laws.case import Case
+from sensorfault.types import Sample
+
+
+def half(rows: Sample) -> int:
+    return rows.time.shape[-1] // 2
+
+
+def telling(case: Case) -> int:
+    """The first row of the second half that has a new measurement on every channel."""
+    fresh = np.asarray(case.rows.fresh)
+    return half(case.rows) + int(np.flatnonzero(fresh[half(case.rows) :].all(axis=1))[0])
+
+
+def lied(rows: Sample, span: slice, offset) -> Sample:
+    return rows._replace(value=rows.value.at[span].add(jnp.asarray(offset)))
+
+
+def silenced(rows: Sample, span: slice, channels=slice(None)) -> Sample:
+    """NaN, and marked as present: what is not a number is not there, whatever the log says."""
+    return rows._replace(value=rows.value.at[span, channels].set(jnp.nan))
+
+
+def absent(rows: Sample, span: slice, channels=slice(None)) -> Sample:
+    return rows._replace(
+        present=rows.present.at[span, channels].set(False), fresh=rows.fresh.at[span, channels].set(False)
+    )
+
+
+def holed(rows: Sample, row: int) -> Sample:
+    """One NaN in each floating array of the block."""
+
+    def hole(x):
+        return x.at[(row, *[0] * (x.ndim - 1))].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
+
+    return rows._replace(block=jax.tree.map(hole, rows.block))
+
+
+def alone(case: Case, channel: int) -> np.ndarray:
+    """The lie of one channel."""
+    return np.where(np.arange(case.channels) == channel, case.lie, 0.0)
+
+
+def troubled(case: Case) -> Sample:
+    """Each channel lies for a while, then is silent for a while, one after the other; at last all are silent."""
+    rows, start = case.rows, half(case.rows)
+    room = (rows.time.size - start - 20) // case.channels
+    for c in range(case.channels):
+        at = start + c * room
+        rows = lied(rows, slice(at, at + room // 3), alone(case, c))
+        rows = silenced(rows, slice(at + room // 2, at + room // 2 + room // 4), c)
+    rows = silenced(rows, slice(-15, -10))
+    return holed(rows, start + 10)

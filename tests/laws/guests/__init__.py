@@ -1,0 +1,1 @@
+"""Toy stages that are in no paper: what the monitor must be able to carry, as small as it can be."""

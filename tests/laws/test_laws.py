@@ -1,0 +1,314 @@
+"""The laws of ARCHITECTURE.md, over every guest and every recipe: see cases.py."""
+
+import functools
+from collections.abc import Callable
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from laws.case import Case
+from laws.cases import cases
+from laws.compilations import compilations
+from laws.damage import absent, alone, half, holed, lied, silenced, telling, troubled
+from laws.walk import Walk, assert_close, assert_same, finite, walk
+from sensorfault.monitor.monitor import Monitor
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.run import Now, Stepper, fleet
+from sensorfault.types import FAULT, OK, UNKNOWN, Report, Sample
+
+every_case = pytest.mark.parametrize("case", cases(), ids=str)
+
+
+def cases_with(field: Callable[[Case], object]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("case", [case for case in cases() if field(case)], ids=str)
+
+
+@functools.cache
+def healthy(case: Case) -> Walk:
+    return walk(case.monitor, case.rows)
+
+
+@functools.cache
+def trouble(case: Case) -> Walk:
+    return walk(case.monitor, troubled(case))
+
+
+# Stepper packs state and answer with ravel_pytree, which makes floats of truth values: not strict, and on purpose.
+packing = jax.numpy_dtype_promotion("standard")
+
+
+def push(stream: Stepper, rows: Sample, k: int) -> Now:
+    """Row k of a log of NumPy arrays."""
+    block = jax.tree.map(lambda x: x[k], rows.block)
+    return stream.push(rows.time[k], rows.value[k], rows.fresh[k], block if jax.tree.leaves(block) else None)
+
+
+# 0. What the others rest on: the healthy log is healthy, the lies are named, the masks are what they say.
+
+
+@every_case
+def test_healthy_is_ok_and_a_lie_is_named(case: Case) -> None:
+    k = telling(case)
+    second = healthy(case).channel[half(case.rows) :]
+    assert (second == FAULT).mean() < 2 * (case.rate or 0.005)
+    assert (second == OK).any(axis=0).all()
+    for c in range(case.channels):
+        told = walk(case.monitor, lied(case.rows, slice(k, k + 1), alone(case, c)))
+        assert told.channel[k, c] == FAULT
+        assert told.sensor[k, case.monitor.owner[c]] == FAULT
+        assert told.sample[k] == FAULT
+        assert not told.reports.trust.measured[k, c]
+
+
+@every_case
+def test_masks_are_consistent(case: Case) -> None:
+    told, rows = trouble(case), troubled(case)
+    trust, fresh = told.reports.trust, np.asarray(rows.fresh & jnp.isfinite(rows.value))
+    assert not (trust.measured & ~fresh).any()
+    assert not (trust.filled & trust.measured).any()
+    assert not (trust.learn & ~trust.measured).any()
+    assert (told.channel[trust.learn] == OK).all()
+    assert not trust.learn[told.sample == FAULT].any()
+    assert (told.sensor == sensor_by_sensor(case.monitor.owner, told.channel)).all()
+    assert np.isfinite(trust.value).all()
+
+
+def sensor_by_sensor(owner: tuple[int, ...], channel: np.ndarray) -> np.ndarray:
+    return np.stack([channel[:, np.array(owner) == s].max(axis=1) for s in range(max(owner) + 1)], axis=1)
+
+
+# 1. Stream equals replay.
+
+
+@every_case
+def test_stream_equals_replay(case: Case) -> None:
+    """... and is compiled before the first sample comes."""
+    told, rows = trouble(case).reports, jax.tree.map(np.asarray, troubled(case))
+    with packing:
+        stream = Stepper(case.monitor, jax.tree.map(lambda x: x[0], rows.block))
+        with compilations() as made:
+            answers = [push(stream, rows, k) for k in range(rows.time.size)]
+    assert not made
+    for k, now in enumerate(answers):
+        np.testing.assert_array_equal(now.channel, told.verdict.channel[k])
+        np.testing.assert_array_equal(now.sensor, told.verdict.sensor[k])
+        assert now.sample == told.verdict.sample[k]
+        assert_close(
+            (now.score, now.limit, now.value, now.residual, now.silence),
+            (
+                np.concatenate([np.where(score.valid[k], score.value[k], np.nan) for score in told.scores]),
+                np.concatenate([limit[k] for limit in told.limits]),
+                told.trust.value[k],
+                told.residual.value[k],
+                told.silence[k],
+            ),
+        )
+
+
+# 2. A distrusted sample leaves references, thresholds and weights as they were.
+
+
+@every_case
+def test_two_lies_leave_the_same_filter_limits_and_weights(case: Case) -> None:
+    """Whatever was said, it was not believed: nothing but the evidence may know how big the lie was."""
+    k = telling(case)
+    for c in range(case.channels):
+        small, big = (walk(case.monitor, lied(case.rows, slice(k, k + 1), n * alone(case, c))) for n in (1, 2))
+        assert_same(small.reports.trust.measured[k], big.reports.trust.measured[k])
+        for told in (small, big):
+            assert not told.reports.trust.learn[k].any()
+        after_small, after_big = (jax.tree.map(lambda x: x[k], told.states) for told in (small, big))
+        assert_same(after_small.residual, after_big.residual)
+        assert_same(case.learned(after_small), case.learned(after_big))
+
+
+@every_case
+def test_what_may_not_learn_does_not(case: Case) -> None:
+    told = trouble(case)
+    still = ~told.reports.trust.learn[1:].any(axis=1)
+    assert still.any()
+    for x in jax.tree.leaves(case.learned(told.states)):
+        np.testing.assert_array_equal(x[1:][still], x[:-1][still])
+
+
+# 3. A limit of +inf is silent, one of -inf alarms wherever there is a valid test.
+
+
+def with_limit(monitor: Monitor, report: Report, limit: float) -> Monitor:
+    fixed = [Fixed(jnp.full(limits.shape[1:], limit)) for limits in report.limits]
+    return eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, fixed)
+
+
+@every_case
+def test_infinite_limits(case: Case) -> None:
+    reports = trouble(case).reports
+    silent = walk(with_limit(case.monitor, reports, np.inf), troubled(case))
+    assert not (silent.channel == FAULT).any()
+    assert not (silent.sample == FAULT).any()
+    loud = walk(with_limit(case.monitor, reports, -np.inf), troubled(case))
+    tested = np.concatenate([score.valid for score in loud.reports.scores], axis=1).any(axis=1)
+    assert tested.any()
+    assert (loud.sample[tested] == FAULT).all()
+    assert (loud.sensor[tested] == FAULT).any(axis=1).all()
+
+
+# 4. What is not there is unknown, poisons nothing, and does not silence the others.
+
+
+@every_case
+@pytest.mark.parametrize("remove", [silenced, absent])
+def test_a_missing_channel_is_unknown_and_the_others_are_judged(case: Case, remove) -> None:
+    start, length = half(case.rows) + 7, 40
+    gone = slice(start, start + length)
+    clean, time = healthy(case), np.asarray(case.rows.time)
+    for c in range(case.channels):
+        told = walk(case.monitor, remove(case.rows, gone, c))
+        assert finite(told.states)
+        fresh = np.flatnonzero(np.asarray(case.rows.fresh)[:start, c])
+        late = time[gone] - time[fresh[-1]] > case.hold_s[c] + 1e-9
+        assert late.any()
+        assert (told.channel[gone, c][late] == UNKNOWN).all()
+        assert (told.sensor[gone, case.monitor.owner[c]][late] >= UNKNOWN).all()
+        others = np.arange(case.channels) != c
+        assert (told.channel[gone][:, others] != UNKNOWN)[clean.channel[gone][:, others] != UNKNOWN].all()
+
+
+@every_case
+def test_an_empty_sample_is_unknown(case: Case) -> None:
+    k = half(case.rows) + 7
+    long = slice(k, k + 40)
+    told = walk(case.monitor, silenced(case.rows, long))
+    assert finite(told.states)
+    late = np.asarray(case.rows.time)[long] - np.asarray(case.rows.time)[k - 1] > case.hold_s.max() + 1e-9
+    assert (told.channel[long][late] == UNKNOWN).all()
+    assert (told.sample[long][late] == UNKNOWN).all()
+
+
+@cases_with(lambda case: jax.tree.leaves(case.rows.block))
+def test_a_hole_in_the_block_costs_one_sample(case: Case) -> None:
+    k = telling(case)
+    told, clean = walk(case.monitor, holed(case.rows, k)), healthy(case)
+    assert finite(told.states)
+    assert not (told.channel[k] == FAULT).any()
+    after = slice(k + 1, None)
+    assert (told.channel[after] == clean.channel[after]).mean() > 0.99
+
+
+# 5. Channels have no order, vehicles have no neighbours.
+
+
+@cases_with(lambda case: case.permuted)
+def test_permuted_channels_permute_the_verdicts(case: Case) -> None:
+    assert case.permuted
+    order = np.roll(np.arange(case.channels), 1)
+    rows, told = troubled(case), trouble(case)
+    other = walk(
+        case.permuted(order),
+        rows._replace(value=rows.value[:, order], present=rows.present[:, order], fresh=rows.fresh[:, order]),
+    )
+    np.testing.assert_array_equal(other.channel, told.channel[:, order])
+    np.testing.assert_array_equal(other.sample, told.sample)
+    assert_close(other.reports.residual.value, told.reports.residual.value[:, order], 1e-8)
+
+
+@pytest.mark.parametrize(
+    ("case", "vehicles"), [*((case, 3) for case in cases()), *((case, 1) for case in cases()[2:3])], ids=str
+)
+def test_a_fleet_is_its_vehicles(case: Case, vehicles: int) -> None:
+    logs = [troubled(case), case.rows, lied(case.rows, slice(half(case.rows), None), alone(case, 0))][:vehicles]
+
+    @jax.jit
+    def together(monitor, states, rows):
+        return fleet(monitor, states, rows, lambda r: (r.verdict, r.residual.value, r.trust.value))
+
+    def stack(trees):
+        return jax.tree.map(lambda *x: jnp.stack(x), *trees)
+
+    state = case.monitor.init()
+    states, told = together(case.monitor, stack([state] * vehicles), stack(logs))
+    for i, log in enumerate(logs):
+        single = walk(case.monitor, log)
+        mine = jax.tree.map(lambda x, i=i: np.asarray(x[i]), told)
+        assert_close(mine, (single.reports.verdict, single.reports.residual.value, single.reports.trust.value))
+        end = jax.tree.map(lambda x, i=i: np.asarray(x[i]), states)
+        assert_close(end, jax.tree.map(lambda x: x[-1], single.states))
+
+
+# 6. Saved and loaded: the same to the bit. See test_store.py
+
+
+# 7. One compilation a shape.
+
+
+@every_case
+def test_one_compilation_a_shape(case: Case) -> None:
+    """Neither another log nor other numbers in the monitor compile the replay again."""
+    rows = troubled(case)
+    shifted = jax.tree.map(lambda x: x * 1.5 if jnp.issubdtype(x.dtype, jnp.floating) else x, case.monitor)
+    start = case.monitor.init()
+    healthy(case)
+    with compilations() as made:
+        walk(shifted, rows, start)
+    assert not made
+
+
+def test_compilations_are_counted() -> None:
+    with compilations() as made:
+        jax.jit(lambda x: x + 1)(np.ones(3))
+    assert made
+
+
+# 8. It comes back.
+
+
+def assert_back(case: Case, told: Walk, end: int, rows: Sample | None = None) -> None:
+    """From `back_s` after row `end`, the verdicts are those of the healthy run."""
+    time = np.asarray((rows or case.rows).time)
+    back = time > time[end] + case.back_s
+    assert back.sum() >= 20, "the log ends too early to tell"
+    assert (told.channel[back] == healthy(case).channel[back]).mean() > 0.99
+    assert (told.channel[back] == OK).any(axis=0).all()
+
+
+@every_case
+def test_back_after_a_dropout(case: Case) -> None:
+    start = half(case.rows)
+    assert_back(case, walk(case.monitor, silenced(case.rows, slice(start, start + 50))), start + 50)
+
+
+@every_case
+def test_back_after_a_gap_in_the_clock(case: Case) -> None:
+    start = half(case.rows)
+    later = jnp.where(jnp.arange(case.rows.time.size) < start, 0.0, 60.0)
+    rows = case.rows._replace(time=case.rows.time + later)
+    assert_back(case, walk(case.monitor, rows), start, rows)
+
+
+@every_case
+def test_back_after_a_long_fault(case: Case) -> None:
+    start = telling(case)
+    for c in range(case.channels):
+        told = walk(case.monitor, lied(case.rows, slice(start, start + 75), alone(case, c)))
+        assert told.channel[start, c] == FAULT
+        assert_back(case, told, start + 75)
+
+
+# 9. False alarms come as often as designed.
+
+
+@cases_with(lambda case: case.rate)
+def test_false_alarms_come_at_the_designed_rate(case: Case) -> None:
+    assert case.rate
+    assert case.quiet
+    vehicles, long = case.quiet.time.shape
+    states = jax.tree.map(lambda x: jnp.broadcast_to(x, (vehicles, *x.shape)), case.monitor.init())
+    _, channel = jax.jit(lambda m, s, r: fleet(m, s, r, lambda report: report.verdict.channel))(
+        case.monitor, states, case.quiet
+    )
+    warm = np.asarray(channel)[:, long // 2 :].reshape(-1, case.channels)
+    achieved = (warm == FAULT).sum(axis=0) / (warm != UNKNOWN).sum(axis=0)
+    assert (achieved > case.rate / 2).all()
+    assert (achieved < case.rate * 2).all()
