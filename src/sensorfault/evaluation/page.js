@@ -7,41 +7,70 @@ const drawn = new Map(); // id -> figure
 let whole = null;
 let shown = null; // from, to [s]
 
-function floats(text) {
-  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  return new Float64Array(bytes.buffer);
+function floats({ f4, from }) {
+  const bytes = Uint8Array.from(atob(f4), (c) => c.charCodeAt(0));
+  return Float64Array.from(new Float32Array(bytes.buffer), (value) => value + from);
 }
 
 function read() {
   const style = getComputedStyle(document.documentElement);
   return JSON.parse(source, (key, value) => {
-    if (typeof value?.f8 === "string") return floats(value.f8);
+    if (typeof value?.f4 === "string") return floats(value);
     if (key.endsWith("color") && String(value).startsWith("--")) return style.getPropertyValue(value).trim();
     return value;
   });
 }
 
-// The y axes that show all that lies between two times, and little else.
-function heights(figure, [from, to]) {
-  const spans = {};
-  for (const { x, y, yaxis } of figure.fit ? figure.data : []) {
-    const log = figure.layout["yaxis" + yaxis.slice(1)].type === "log";
-    const span = (spans["yaxis" + yaxis.slice(1)] ??= { low: Infinity, high: -Infinity, log });
-    for (let i = 0; i < x.length; i++) {
-      if (!(x[Math.min(i + 1, x.length - 1)] >= from && x[Math.max(i - 1, 0)] <= to)) continue;
-      if (!Number.isFinite(y[i]) || (log && y[i] <= 0)) continue;
-      span.low = Math.min(span.low, y[i]);
-      span.high = Math.max(span.high, y[i]);
+// How many of the rising numbers x lie below a limit.
+function rank(x, limit) {
+  let [low, high] = [0, x.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (x[middle] < limit) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+// Of a line, what a screen can show between two times: the least and the greatest value of each of many stretches.
+function thin(trace, [from, to]) {
+  const { x, y } = trace;
+  let [first, last] = [rank(x, from), rank(x, to)];
+  if (first > 0 && first < x.length) first -= 1; // the line comes in from the left
+  if (last > 0 && last < x.length) last += 1;
+  const width = Math.ceil((last - first) / 1500);
+  if (width <= 2) return { ...trace, x: x.slice(first, last), y: y.slice(first, last) };
+  const kept = [];
+  for (let i = first; i < last; i += width) {
+    let [low, high, gap] = [i, i, i];
+    for (let j = i; j < Math.min(i + width, last); j++) {
+      if (Number.isNaN(y[j])) gap = j;
+      if (y[j] < y[low] || Number.isNaN(y[low])) low = j;
+      if (y[j] > y[high] || Number.isNaN(y[high])) high = j;
     }
+    kept.push(...new Set([low, high, gap].sort((a, b) => a - b)));
   }
-  const change = {};
-  for (const [axis, { low, high, log }] of Object.entries(spans)) {
+  return { ...trace, x: kept.map((i) => x[i]), y: kept.map((i) => y[i]) };
+}
+
+// Each y axis as high as what is drawn on it between two times.
+function fit(layout, data, [from, to]) {
+  const spans = {};
+  for (const { x, y, yaxis } of data) {
+    const name = "yaxis" + yaxis.slice(1);
+    const span = (spans[name] ??= { low: Infinity, high: -Infinity });
+    y.forEach((value, i) => {
+      if (!Number.isFinite(value) || x[i] < from || x[i] > to || (layout[name].type === "log" && value <= 0)) return;
+      span.low = Math.min(span.low, value);
+      span.high = Math.max(span.high, value);
+    });
+  }
+  for (const [name, { low, high }] of Object.entries(spans)) {
     if (low > high) continue;
-    const [a, b] = log ? [Math.log10(low), Math.log10(high)] : [low, high];
+    const [a, b] = layout[name].type === "log" ? [Math.log10(low), Math.log10(high)] : [low, high];
     const margin = 0.1 * (b - a) || 0.01 * Math.abs(b) || 1;
-    change[axis + ".range"] = [a - margin, b + margin];
+    layout[name].range = [a - margin, b + margin];
   }
-  return change;
 }
 
 function clock(seconds) {
@@ -50,10 +79,22 @@ function clock(seconds) {
   return (seconds < 0 ? "−" : "") + (h ? `${h}:${String(m).padStart(2, "0")}:${s}` : `${m}:${s}`);
 }
 
+function paint(id, figure) {
+  const data = figure.fit ? figure.data.map((trace) => thin(trace, shown)) : figure.data;
+  const layout = structuredClone(figure.layout);
+  layout.xaxis.range = [...shown];
+  if (figure.fit) fit(layout, data, shown);
+  return Plotly.react(id, data, layout, { displayModeBar: false, responsive: true, doubleClick: false });
+}
+
+function say() {
+  document.getElementById("shown").textContent = `${clock(shown[0])} to ${clock(shown[1])} of ${clock(whole[1])}`;
+}
+
 function show(from, to) {
   shown = to > from ? [from, to] : whole;
-  document.getElementById("shown").textContent = `${clock(shown[0])} to ${clock(shown[1])} of ${clock(whole[1])}`;
-  for (const [id, figure] of drawn) Plotly.relayout(id, { "xaxis.range": [...shown], ...heights(figure, shown) });
+  say();
+  for (const [id, figure] of drawn) paint(id, figure);
 }
 
 function dress(figure) {
@@ -67,8 +108,6 @@ function dress(figure) {
     hoverlabel: { bgcolor: color("--back"), bordercolor: color("--rule"), font: { color: color("--text"), size: 12 } },
   });
   for (const note of layout.annotations ?? []) note.font = { color: color("--text"), size: 12 };
-  layout.xaxis.range = [...shown];
-  for (const [axis, range] of Object.entries(heights(figure, shown))) layout[axis.split(".")[0]].range = range;
   return figure;
 }
 
@@ -84,13 +123,13 @@ async function draw() {
   for (const [id, figure] of Object.entries(read())) {
     whole ??= [...figure.layout.xaxis.range];
     shown ??= whole;
+    say();
     const fresh = !drawn.has(id);
     drawn.set(id, dress(figure));
-    await Plotly.react(id, figure.data, figure.layout, { displayModeBar: false, responsive: true, doubleClick: false });
+    await paint(id, figure);
     if (fresh) listen(document.getElementById(id));
     await new Promise((done) => setTimeout(done));
   }
-  show(...shown);
 }
 
 function visit(row) {

@@ -16,8 +16,7 @@ from sensorfault.evaluation.page_verdicts import verdicts
 from sensorfault.evaluation.page_words import event_table, facts, result, sentences, truth_table
 from sensorfault.faults.fault import Fault
 
-POINTS = 4000  # a line, where there are few
-ALL_POINTS = 160_000  # all lines together: some 4 MB
+POINTS = 300_000  # all lines together, and at most as many again around the events: 3 to 7 MB
 
 TRUTH_LEGEND = (
     '<span><i class="injected"></i>injected fault</span><span><i class="{missed}"></i>injected and missed</span>'
@@ -80,8 +79,7 @@ def page(detection: Detection, truth: Sequence[Fault], title: str | None, summar
 
 def figures(detection: Detection, truth: Sequence[Fault] = ()) -> dict[str, Json]:
     """The plots by the id of their place on the page."""
-    lines = len(detection.log.channels) + len(detection.traces)
-    points = max(400, min(POINTS, ALL_POINTS // max(1, lines)))
+    points = max(1000, POINTS // max(1, len(detection.log.channels) + len(detection.traces)))
     charts = {"verdicts": verdicts(detection, truth)}
     for i, sensor in enumerate(detection.log.sensors):
         if detection.log.of(sensor.name):

@@ -24,15 +24,24 @@ def extremes(value: Float[np.ndarray, " T"], buckets: int) -> Int[np.ndarray, " 
 
 
 def near(time: Float[np.ndarray, " T"], spans: Sequence[Span], budget: int) -> Bool[np.ndarray, " T"]:
-    """Ticks close to a start or an end of `spans`: two seconds either side, fewer if over `budget`."""
+    """Ticks in and around `spans`, about `budget` at most.
+
+    The shortest spans are kept whole, with half their length and at least two seconds either side, up to half the
+    budget. The others share the rest for the ticks about their starts and ends.
+    """
     mask = np.zeros(time.size, dtype=bool)
-    if not spans or time.size < 2:
+    if not spans:
         return mask
-    most = max(1, budget // (4 * len(spans)))
-    edges = np.unique(np.array(spans, dtype=float))
-    first, middle, last = (np.searchsorted(time, edges + margin) for margin in (-2.0, 0.0, 2.0))
-    for low, centre, high in zip(first, middle, last, strict=True):
-        mask[max(low, centre - most) : min(high, centre + most) + 1] = True
+    start, end = np.array(spans, dtype=float).T
+    margin = np.maximum(2.0, (end - start) / 2)
+    first, last = np.searchsorted(time, start - margin), np.searchsorted(time, end + margin)
+    order = np.argsort(last - first)
+    whole = np.cumsum((last - first)[order]) <= budget // 2
+    for i in order[whole]:
+        mask[first[i] : last[i]] = True
+    most = max(1, budget // (8 * len(spans)))
+    for edge in np.searchsorted(time, np.concatenate((start[order[~whole]], end[order[~whole]]))):
+        mask[max(0, edge - most) : edge + most + 1] = True
     return mask
 
 

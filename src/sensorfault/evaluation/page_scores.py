@@ -46,4 +46,4 @@ def scores(detection: Detection, points: int) -> Json:
     """One row a test."""
     keep = kept(detection, points)
     rows = [_row(detection, trace, keep, points) for trace in detection.traces]
-    return stacked(rows, whole(detection.log), 64)
+    return stacked(rows, whole(detection.log), 72)

@@ -14,7 +14,7 @@ from sensorfault.evaluation.page_words import clock, found
 from sensorfault.faults.fault import Fault
 from sensorfault.types import FAULT, OK, UNKNOWN, VERDICTS
 
-LANE = 50  # pixels a sensor: its name, the injected faults, the band
+LANE = 56  # pixels a sensor: its name, the injected faults, the band
 LOOKS: dict[int, Json] = {
     OK: {"width": 0.12, "marker": {"color": "--ok"}},
     UNKNOWN: {
@@ -84,13 +84,13 @@ def _truth(detection: Detection, truth: Sequence[Fault]) -> list[Json]:
         "type": "scatter",
         "mode": "markers",
         "x": [(low + high) / 2 for low, high, _, _ in misses],
-        "y": [place - 0.13 for _, _, place, _ in misses],
+        "y": [place - 0.08 for _, _, place, _ in misses],
         "marker": {"symbol": "x-thin", "size": 9, "line": pen},
         "hovertext": [text for _, _, _, text in misses],
         "hoverinfo": "text",
     }
-    found_ones = _trace(hits, {"width": 0.07, "marker": {"color": "--truth", "line": pen}}, -0.13)
-    missed_ones = _trace(misses, {"width": 0.07, "marker": {"color": "--back", "line": pen}}, -0.13)
+    found_ones = _trace(hits, {"width": 0.07, "marker": {"color": "--truth", "line": pen}}, -0.08)
+    missed_ones = _trace(misses, {"width": 0.07, "marker": {"color": "--back", "line": pen}}, -0.08)
     return [found_ones, missed_ones, cross]
 
 
@@ -103,7 +103,7 @@ def _label(lane: int, name: str) -> Json:
 def verdicts(detection: Detection, truth: Sequence[Fault] = ()) -> Json:
     """One band a sensor, top to bottom in the order of the log."""
     bars = _bars(detection)
-    data = [_trace([bar for code, bar in bars if code == verdict], look, 0.22) for verdict, look in LOOKS.items()]
+    data = [_trace([bar for code, bar in bars if code == verdict], look, 0.24) for verdict, look in LOOKS.items()]
     names = [_label(i, name) for i, (name, _) in enumerate(lanes(detection))]
     layout = {
         "height": LANE * max(1, len(names)) + FOOT + 4,

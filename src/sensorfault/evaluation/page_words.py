@@ -8,6 +8,8 @@ from sensorfault.detection import Detection
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
 
+MOTION, GAP, NAMELESS = "vehicle motion", "all (gap in the log)", "unknown which"  # where no sensor is named
+
 
 def clock(seconds: float) -> str:
     """[s] -> m:ss.ss, from an hour on h:mm:ss.ss."""
@@ -29,15 +31,17 @@ def _count(number: int, what: str) -> str:
 
 def result(detection: Detection) -> str:
     """The finding in one sentence."""
-    events, sensors = detection.events, detection.log.sensors
-    faults = [e for e in events if e.subject == "sensor"]
-    named = {e.sensor for e in faults if e.sensor is not None}
-    text = _count(len(faults), "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
-    nameless = sum(e.sensor is None for e in faults)
-    if nameless:
-        text += f", {nameless} of them not laid to one sensor"
-    if len(events) > len(faults):
-        text += f", {_count(len(events) - len(faults), 'implausible motion')}"
+    sensors = detection.log.sensors
+    kinds = [_accused(event) for event in detection.events]
+    named = {e.sensor for e in detection.events if e.sensor is not None and e.subject == "sensor"}
+    faults = sum(accused not in (MOTION, GAP) for accused in kinds)
+    text = _count(faults, "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
+    if NAMELESS in kinds:
+        text += f", {kinds.count(NAMELESS)} of them not laid to one sensor"
+    if MOTION in kinds:
+        text += f", {_count(kinds.count(MOTION), 'implausible motion')}"
+    if GAP in kinds:
+        text += f", {_count(kinds.count(GAP), 'gap')} in the log"
     text += f"; {_count(sum(s.watch for s in sensors), 'sensor')} watched"
     blind = [s.name for s in sensors if not s.watch]
     if blind:
@@ -45,10 +49,16 @@ def result(detection: Detection) -> str:
     return escape(text[0].upper() + text[1:] + ".")
 
 
+def _accused(event: Event) -> str:
+    if event.subject == "motion":
+        return MOTION
+    return event.sensor or (GAP if event.kind == "miss" else NAMELESS)
+
+
 def facts(detection: Detection) -> str:
     """Duration, rate, size, start and method in one line."""
     log = detection.log
-    items = [f"duration {clock(log.duration_s)}", f"{len(log):,} samples"]
+    items = [f"duration {clock(log.duration_s)}", f"{len(log):,} sample{'' if len(log) == 1 else 's'}"]
     if len(log) > 1:
         items[-1] += f" at {1 / log.period_s:.3g} Hz"
     items += [_count(len(log.sensors), "sensor"), _count(len(log.channels), "channel")]
@@ -96,9 +106,9 @@ def event_table(detection: Detection) -> str:
     end = float(detection.log.time[-1])
     rows = []
     for i, e in enumerate(detection.events, 1):
-        who = e.sensor or ("vehicle motion" if e.subject == "motion" else "unknown which")
-        against = f"{number(e.peak_score)} / {number(e.limit)}"
-        row = _row(e.start_s, e.end_s, end, (who, e.channel or "–", e.kind, against, e.method))
+        against = "–" if e.peak_score is None else f"{number(e.peak_score)} / {number(e.limit)}"
+        against += " s silent" if e.kind == "miss" and e.peak_score is not None else ""
+        row = _row(e.start_s, e.end_s, end, (_accused(e), e.channel or "–", e.kind, against, e.method))
         rows.append(row.replace("<td", f"<td>{i}</td><td", 1))
     return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
 
