@@ -12,7 +12,7 @@ heights = st.floats(-10e3, 36e6)
 
 def test_points_whose_place_is_known() -> None:
     a, b = 6378137.0, 6356752.314245179  # WGS-84 semi-axes, NGA.STND.0036
-    point = geodesy.geodetic_to_ecef([0.0, 0.0, np.pi / 2], [0.0, np.pi / 2, 0.3], [0.0, 100.0, 20.0])
+    point = geodesy.geodetic_to_ecef(*np.array([[0.0, 0.0, np.pi / 2], [0.0, np.pi / 2, 0.3], [0.0, 100.0, 20.0]]))
     np.testing.assert_allclose(point, [[a, 0, 0], [0, a + 100, 0], [0, 0, b + 20]], atol=1e-8)
     # IGS station WTZR (Wettzell): ITRF coordinates, and the geodetic ones of its site log.
     wettzell = np.array([4075580.3, 931853.9, 4801568.2])
@@ -53,7 +53,7 @@ def test_local_axes_are_right_handed_and_up_is_the_way_height_grows(latitude: fl
 
 def test_small_steps_are_radius_times_angle() -> None:
     origin, step = (0.9, 0.2, 150.0), 1e-6
-    point = geodesy.geodetic_to_ecef([0.9 + step, 0.9], [0.2, 0.2 + step], 150.0)
+    point = geodesy.geodetic_to_ecef(np.array([0.9 + step, 0.9]), np.array([0.2, 0.2 + step]), 150.0)
     # dn = (M + h) dφ,  de = (N + h) cos φ dλ; M and N at 0.9 rad from the textbook formulas.
     e2, s = 0.00669437999014, np.sin(0.9)
     n = 6378137.0 / np.sqrt(1 - e2 * s**2)

@@ -60,7 +60,7 @@ def test_rates_and_forces_integrate_to_the_motion() -> None:
         track.append(velocity)
     error = np.array(track) - m.velocity[1:]
     assert m.speed.max() > 10
-    assert np.abs(error).max() < 0.25
+    assert np.abs(error).max() < 0.02
 
 
 def test_the_log_is_like_a_real_one(drives: list[Simulated]) -> None:

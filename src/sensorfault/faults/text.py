@@ -100,6 +100,7 @@ def _fault(entry: Any, number: int) -> Fault:
         wrong = not isinstance(full[name], types) or (isinstance(full[name], bool) and bool not in types)
         if wrong:
             raise FaultError(f"Fault {number} of the truth: '{name}' is {json.dumps(full[name])}; correct its type.")
-    fault = Fault(**{name: float(x) if float in _TYPES[name] else x for name, x in full.items()})
+    full |= {name: float(full[name]) for name, types in _TYPES.items() if float in types}
+    fault = Fault(**full)
     check_fault(fault)
     return fault

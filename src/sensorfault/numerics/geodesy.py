@@ -8,29 +8,29 @@ section 2.4; the constants are those of NGA.STND.0036 (2014), table 3.1.
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 SEMI_MAJOR_AXIS = 6_378_137.0  # a [m]
 FLATTENING = 1 / 298.257223563  # f
 ECCENTRICITY_SQUARED = FLATTENING * (2 - FLATTENING)  # e²
 SEMI_MINOR_AXIS = SEMI_MAJOR_AXIS * (1 - FLATTENING)  # b [m]
 
+Numbers = float | Float[np.ndarray, "..."]
 Points = Float[np.ndarray, "*n 3"]
 
 
-def transverse_radius(latitude: ArrayLike) -> Float[np.ndarray, "*n"]:
+def transverse_radius(latitude: Numbers) -> Float[np.ndarray, "*n"]:
     """Radius of curvature of the prime vertical, east-west [m] (Groves 2.106)."""
     # N = a / √(1 - e² sin²φ)
     return np.asarray(SEMI_MAJOR_AXIS / np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2))
 
 
-def meridian_radius(latitude: ArrayLike) -> Float[np.ndarray, "*n"]:
+def meridian_radius(latitude: Numbers) -> Float[np.ndarray, "*n"]:
     """Radius of curvature of the meridian, north-south [m] (Groves 2.105)."""
     # M = a (1 - e²) / (1 - e² sin²φ)^(3/2)
     return np.asarray(transverse_radius(latitude) ** 3 * (1 - ECCENTRICITY_SQUARED) / SEMI_MAJOR_AXIS**2)
 
 
-def geodetic_to_ecef(latitude: ArrayLike, longitude: ArrayLike, height: ArrayLike) -> Points:
+def geodetic_to_ecef(latitude: Numbers, longitude: Numbers, height: Numbers) -> Points:
     """Latitude, longitude [rad] and height above the ellipsoid [m] -> ECEF (..., 3) [m] (Groves 2.112)."""
     lat, lon, h = np.broadcast_arrays(latitude, longitude, height)
     n = transverse_radius(lat)
@@ -65,7 +65,7 @@ def ecef_to_geodetic(
     return np.asarray(lat), np.asarray(np.arctan2(y, x)), np.asarray(height)
 
 
-def enu_axes(latitude: ArrayLike, longitude: ArrayLike) -> Float[np.ndarray, "*n 3 3"]:
+def enu_axes(latitude: Numbers, longitude: Numbers) -> Float[np.ndarray, "*n 3 3"]:
     """Rotation ECEF -> local frame: the rows are the east, north and up unit vectors (Groves 2.150, rows reordered)."""
     lat, lon = np.broadcast_arrays(latitude, longitude)
     sin_lat, cos_lat, sin_lon, cos_lon = np.sin(lat), np.cos(lat), np.sin(lon), np.cos(lon)

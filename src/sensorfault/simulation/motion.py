@@ -27,7 +27,7 @@ class Motion:
     position: Float[np.ndarray, "T 3"]  # east, north, up of the start [m]
     velocity: Float[np.ndarray, "T 3"]  # [m/s]
     speed: Float[np.ndarray, " T"]  # along the road [m/s]
-    acceleration: Float[np.ndarray, "T 3"]  # forward, left, up of the road [m/s^2]
+    acceleration: Float[np.ndarray, "T 3"]  # forward and left on the level, up [m/s^2]
     roll: Float[np.ndarray, " T"]  # [rad]
     pitch: Float[np.ndarray, " T"]  # [rad]
     heading: Float[np.ndarray, " T"]  # [rad], not wrapped
@@ -58,22 +58,21 @@ def travel(route: Route, time: Float[np.ndarray, " T"], rng: np.random.Generator
     leaving = arrival + np.cumsum(wait)
     clock = np.stack((leaving - wait, leaving), axis=1).ravel()
     speed = smooth(np.interp(time, clock, np.repeat(v, 2)), round(2 * EASING_S / dt))
-    distance = np.concatenate(([0.0], np.cumsum((speed[1:] + speed[:-1]) * dt / 2)))
+    distance = _integral(speed, dt)
 
     def along(x: Float[np.ndarray, " M"]) -> Float[np.ndarray, " T"]:
         return np.asarray(np.interp(distance, route.distance, x))
 
-    heading = along(_integral(route.curvature))
+    # ψ' = v κ
+    yaw_rate = speed * along(route.curvature)
+    heading = _integral(yaw_rate, dt)
     climb = along(np.arctan(route.slope))
-    level = np.cos(climb)
-    velocity = speed[:, None] * np.stack((level * np.cos(heading), level * np.sin(heading), np.sin(climb)), axis=1)
-    position = np.concatenate((np.zeros((1, 3)), np.cumsum((velocity[1:] + velocity[:-1]) * dt / 2, axis=0)))
-    forward = np.gradient(speed, dt)
-    left = speed**2 * along(route.curvature)
-    up = speed**2 * along(np.gradient(route.slope, STEP_M))
+    level, rise = speed * np.cos(climb), speed * np.sin(climb)
+    velocity = np.stack((level * np.cos(heading), level * np.sin(heading), rise), axis=1)
+    forward, left, up = np.gradient(level, dt), level * yaw_rate, np.gradient(rise, dt)
     return Motion(
         time=time,
-        position=position,
+        position=_integral(velocity, dt),
         velocity=velocity,
         speed=speed,
         acceleration=np.stack((forward, left, up), axis=1),
@@ -83,6 +82,6 @@ def travel(route: Route, time: Float[np.ndarray, " T"], rng: np.random.Generator
     )
 
 
-def _integral(x: Float[np.ndarray, " M"]) -> Float[np.ndarray, " M"]:
-    """Trapezoids over the route, from 0."""
-    return np.concatenate(([0.0], np.cumsum((x[1:] + x[:-1]) * STEP_M / 2)))
+def _integral(x: Float[np.ndarray, "T *n"], step: float) -> Float[np.ndarray, "T *n"]:
+    """Trapezoids from the first row on, which becomes 0."""
+    return np.concatenate((np.zeros_like(x[:1]), np.cumsum((x[1:] + x[:-1]) * step / 2, axis=0)))

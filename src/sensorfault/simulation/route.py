@@ -1,5 +1,6 @@
 """A random road through a town: curvature, slope, speed limit and places to stop, by distance."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,11 +68,11 @@ def _junction(rng: np.random.Generator) -> tuple[_Piece, ...]:
     if kind == "bend":
         return (_arc(rng.uniform(50, 200), side * rng.uniform(15, 60)),)
     if kind == "roundabout":
-        around = rng.choice((90.0, 180.0, 270.0))
-        return _arc(15, -45), _arc(14, around), _arc(15, -45)
+        around = float(rng.choice((90.0, 180.0, 270.0)))
+        return _arc(15.0, -45.0), _arc(14.0, around), _arc(15.0, -45.0)
     return ()
 
 
 def _arc(radius_m: float, degrees: float) -> _Piece:
-    turn = float(np.deg2rad(degrees))
-    return _Piece(float(radius_m) * abs(turn), np.sign(turn) / float(radius_m))
+    turn = math.radians(degrees)
+    return _Piece(radius_m * abs(turn), math.copysign(1 / radius_m, turn))
