@@ -7,6 +7,7 @@ import numpy as np
 import polars as pl
 from jaxtyping import Float, Int
 
+from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.source import Source
 from sensorfault.logs.table import LogError
 
@@ -53,9 +54,8 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
     usable = np.flatnonzero(np.isfinite(time))
     if len(usable) < len(time):
         bad = int(np.flatnonzero(~np.isfinite(time))[0])
-        notes.append(
-            f"{name}: {len(time) - len(usable)} rows have no time (first {_place(source, bad)}) and were dropped."
-        )
+        lost = counted(len(time) - len(usable), "row")
+        notes.append(f"{name}: {lost} without a time, first {source.place(bad)}, left out.")
     rows, faults = _rising(source, column, time, usable)
     kept = time[rows]
     if len(rows) < 2:
@@ -73,7 +73,7 @@ def seconds(source: Source, column: str, unit: str) -> tuple[float, np.ndarray]:
     """
     if unit == "iso8601":
         return _calendar(source, column)
-    reading = source.frame[column] if column in source.frame.columns else source.column(column)
+    reading = source.any_column(column)
     reading = reading.dt.epoch("us") / 1e6 if reading.dtype.is_temporal() else source.column(column)
     known = reading.drop_nulls()
     if not len(known):
@@ -84,8 +84,7 @@ def seconds(source: Source, column: str, unit: str) -> tuple[float, np.ndarray]:
 
 
 def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
-    source_column = source.frame[column] if column in source.frame.columns else source.column(column)
-    stamp = source_column
+    stamp = source_column = source.any_column(column)
     if not stamp.dtype.is_temporal():
         try:
             stamp = (
@@ -95,17 +94,14 @@ def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
             stamp = pl.Series(column, [None] * len(stamp), dtype=pl.Datetime("us"))
     bad = (stamp.is_null() & source_column.is_not_null()).arg_true()
     if len(bad):
+        row = int(bad[0])
         raise LogError(
-            f"{source.path}: {_place(source, int(bad[0]))}, column '{column}' holds '{source_column[int(bad[0])]}', which is "
-            "no date and time like 2026-11-23T12:00:00.5; mend the cell or the time column's unit."
+            f"{source.path}: {source.place(row)}, column '{column}' holds '{source_column[row]}', which is no date and "
+            "time like 2026-11-23T12:00:00.5; mend the cell or the time column's unit."
         )
     ticks = stamp.dt.epoch("us")
     first = ticks.drop_nulls()[0] if ticks.null_count() < len(ticks) else 0
     return first / 1e6, (ticks - first).cast(pl.Float64).to_numpy() / 1e6
-
-
-def _place(source: Source, row: int) -> str:
-    return f"in line {row + source.first_line}" if source.first_line else f"in row {row + 1}"
 
 
 def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -118,16 +114,15 @@ def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -
     dropped = len(usable) - len(rows)
     first = int(usable[1 + np.flatnonzero(step <= 0)[0]])
     found = " and ".join(
-        text for count, text in ((back, f"goes back {back} times"), (repeat, f"stands still {repeat} times")) if count
+        text for count, text in ((back, f"goes back {times(back)}"), (repeat, f"stands still {times(repeat)}")) if count
     )
     if dropped > _HOPELESS * len(usable):
         raise LogError(
-            f"{source.path}: time '{column}' {found} (first {_place(source, first)}), so {dropped} of {len(usable)} rows are "
-            "out of order; sort the file by time, keep one row for each time, or name another time column."
+            f"{source.path}: time '{column}' {found} (first {source.place(first)}), so {dropped} of {len(usable)} rows "
+            "are out of order; sort the file by time, keep one row for each time, or name another time column."
         )
-    return rows, [
-        f"{source.path.name}: time '{column}' {found} (first {_place(source, first)}); {dropped} rows were dropped."
-    ]
+    lost = counted(dropped, "row")
+    return rows, [f"{source.path.name}: time '{column}' {found} (first {source.place(first)}); {lost} left out."]
 
 
 def _longest_rise(time: np.ndarray) -> np.ndarray:
@@ -159,12 +154,12 @@ def _unsteady(name: str, time: np.ndarray) -> list[str]:
     if len(gaps):
         worst = int(np.argmax(step))
         notes.append(
-            f"{name}: {len(gaps)} gaps longer than {GAP:g} periods of {period:.4g} s, the longest {step[worst]:.4g} s at "
-            f"{time[worst]:.3f} s; they were left as gaps."
+            f"{name}: {counted(len(gaps), 'gap')} longer than {GAP:g} periods of {period:.4g} s, the longest "
+            f"{step[worst]:.4g} s at {time[worst] - time[0]:.3f} s; left as gaps."
         )
     off = float(np.quantile(np.abs(step - period), 0.95))
     if off > _JITTER * period:
         notes.append(
-            f"{name}: the time between rows jitters: {period:.4g} s usually, one row in twenty off by {off:.2g} s or more."
+            f"{name}: the time between rows jitters: {period:.4g} s usually, one in twenty off by {off:.2g} s or more."
         )
     return notes

@@ -7,10 +7,11 @@ GPS_EPOCH_S = datetime(1980, 1, 6, tzinfo=UTC).timestamp()  # GPS time 0 as Unix
 WEEK_S = 604800.0
 
 # Days from which GPS time is ahead of UTC by 1, 2, 3, ... 18 s (IERS Bulletin C).
-_LEAPS = [
-    datetime.strptime(f"{day} +0000", "%Y-%m-%d %z").timestamp()
-    for day in ["1981-07-01", "1982-07-01", "1983-07-01", "1985-07-01", "1988-01-01", "1990-01-01", "1991-01-01", "1992-07-01", "1993-07-01", "1994-07-01", "1996-01-01", "1997-07-01", "1999-01-01", "2006-01-01", "2009-01-01", "2012-07-01", "2015-07-01", "2017-01-01"]
-]
+_LEAP_DAYS = """
+    1981-07-01 1982-07-01 1983-07-01 1985-07-01 1988-01-01 1990-01-01 1991-01-01 1992-07-01 1993-07-01
+    1994-07-01 1996-01-01 1997-07-01 1999-01-01 2006-01-01 2009-01-01 2012-07-01 2015-07-01 2017-01-01
+"""
+_LEAPS = [datetime.fromisoformat(day).replace(tzinfo=UTC).timestamp() for day in _LEAP_DAYS.split()]
 
 
 def unix_from_gps_calendar(calendar_s: float) -> float:

@@ -1,18 +1,18 @@
 """Describe an unknown log: which columns are which sensor, in what unit, held or new. Every guess gives its reason."""
 
-import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sensorfault.logs.clock import Clock, read_clock
+from sensorfault.logs.entries import FileEntry, SensorEntry
 from sensorfault.logs.formats import read_source
 from sensorfault.logs.guess_columns import measurements
 from sensorfault.logs.guess_sensors import guess_sensors
 from sensorfault.logs.guess_time import guess_time
 from sensorfault.logs.place import Where, files_of
 from sensorfault.logs.table import LogError
-from sensorfault.logs.vehicle import FileEntry, SensorEntry, VehicleFile
+from sensorfault.logs.vehicle import VehicleFile
 
 _ROWS = 500_000  # a guess looks at so many rows from the beginning
 
@@ -84,8 +84,8 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
             together = one.clock.is_unix and other.clock.is_unix and start < end
             if one.columns == other.columns and not together:
                 raise LogError(
-                    f"{one.path.parent}: {other.path.name} and {one.path.name} have the same columns and look like two drives; "
-                    "name the files of one drive."
+                    f"{one.path.parent}: {other.path.name} and {one.path.name} have the same columns and look like two "
+                    "drives; name the files of one drive."
                 )
 
 
@@ -102,7 +102,8 @@ def _untied(guesses: list[_Guess]) -> list[str]:
 def _short_names(paths: list[Path]) -> list[str]:
     """File names without what they share and without numbers, where they stay apart."""
     stems = [path.stem for path in paths]
-    start = os.path.commonprefix(stems).rfind("_") + 1
+    apart = (i for i, letters in enumerate(zip(*stems, strict=False)) if len(set(letters)) > 1)
+    start = stems[0].rfind("_", 0, next(apart, 0)) + 1
     short = [re.sub(r"\W+", "_", re.sub(r"(_\d+)+$", "", stem[start:])).strip("_").lower() for stem in stems]
     if len(set(short)) == len(short) and all(short):
         return short

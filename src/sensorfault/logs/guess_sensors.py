@@ -8,11 +8,11 @@ import polars as pl
 
 from sensorfault.logs import guess_units as units
 from sensorfault.logs.clock import Clock
+from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.guess_columns import Column
 from sensorfault.logs.held import changes, looks_held, repeats, share_repeated
 from sensorfault.logs.source import Source
 from sensorfault.logs.units import to_si
-from sensorfault.logs.vehicle import ChannelEntry, SensorEntry
 from sensorfault.logs.words import read_name
 
 _UNWATCHED = {
@@ -81,7 +81,7 @@ def _sensor(name: str, group: list[Column], source: Source, clock: Clock, place_
         channel = re.sub(r"\W+", "_", channel)
         seen.add(channel)
         channels.append(ChannelEntry(channel, column.name, unit, _missing_mark(value[:, i], kind), why=why))
-    held = looks_held(value)
+    held = looks_held(value) or all(looks_held(channel[:, None]) for channel in value.T)
     epoch = _epoch(source, value, clock) if held else None
     reasons = [
         f"{share_repeated(value):.0%} of the rows repeat" if held else "",
@@ -165,20 +165,12 @@ def looks_new(reading: np.ndarray) -> bool:
 
 def _wanders(value: np.ndarray) -> bool:
     """Whether any channel's level differs between the halves by more than its spread within them."""
-    half = len(value) // 2
-    first, second = value[:half], value[half:]
-    level = np.abs(_mean(first) - _mean(second))
-    spread = np.sqrt((_variance(first) + _variance(second)) / 2)
-    return bool(np.any(level > _WANDERS * spread))
+    return any(_steps(channel[np.isfinite(channel)]) for channel in value.T)
 
 
-def _mean(value: np.ndarray) -> np.ndarray:
-    known = np.isfinite(value)
-    return np.where(known, value, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-
-
-def _variance(value: np.ndarray) -> np.ndarray:
-    known = np.isfinite(value)
-    return np.where(known, (np.where(known, value, 0.0) - _mean(value)) ** 2, 0.0).sum(axis=0) / np.maximum(
-        known.sum(axis=0), 1
-    )
+def _steps(channel: np.ndarray) -> bool:
+    first, second = np.array_split(channel, 2)
+    if not len(first) or not len(second):
+        return False
+    spread = np.sqrt((first.var() + second.var()) / 2)
+    return bool(abs(first.mean() - second.mean()) > _WANDERS * spread)

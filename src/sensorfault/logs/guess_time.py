@@ -41,8 +41,8 @@ def guess_time(source: Source) -> tuple[str, str, str]:
         ranked.append((named, _is_unix(column, unit), round(share, 2), -i, name, unit))
     if not ranked:
         raise LogError(
-            f"{source.path}: there is no time column: no column rises from row to row; add one, or name it in vehicle.toml "
-            "if the rows are out of order."
+            f"{source.path}: there is no time column: no column rises from row to row; add one, or name it in "
+            "vehicle.toml if the rows are out of order."
         )
     named, unix, _, _, name, unit = max(ranked)
     why = "by its name" if named else "rises from row to row"
@@ -70,7 +70,7 @@ def _unit(name: str, column: pl.Series) -> str:
     bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", name)
     if bracket and bracket[1].strip() in _NAMED_UNITS:
         return _NAMED_UNITS[bracket[1].strip()]
-    for unit, span in _SPAN.items():
+    for unit in _SPAN:
         if _is_unix(column, unit):
             return unit
     for unit, pattern in _UNIT_WORDS:

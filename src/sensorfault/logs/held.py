@@ -4,6 +4,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 HELD_SHARE = 0.3  # a sensor is held if more than this share of its measurements is repeated in the next row
+_REGULAR = 0.88  # share of measurements that last as long as usual, give or take a row
+_SHORTEST = 0.6  # one in five may last for less than this share of the usual
 
 
 def repeats(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:
@@ -23,18 +25,27 @@ def share_repeated(value: Float[np.ndarray, "T C"]) -> float:
 
 
 def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
-    """Whether the rows are a held sensor's: many measurements last for several rows.
+    """Whether the rows are a held sensor's: many measurements last for several rows, all for about as many.
 
-    Measurements are counted, not rows: one long standstill (a parked car, an airspeed of zero) holds nothing.
+    Measurements are counted, not rows: one long standstill (a parked car, an airspeed of zero) holds nothing. And a
+    coarse reading that happens not to change lasts for one row as often as for many: that is no hold either.
     """
     start = np.flatnonzero(~repeats(value) & np.isfinite(value).any(axis=1))
-    return len(start) > 2 and float(np.mean(np.diff(start) > 1)) > HELD_SHARE
+    if len(start) < 3:
+        return False
+    lasts = np.diff(start)
+    if float(np.mean(lasts > 1)) <= HELD_SHARE:
+        return False
+    usual = float(np.median(lasts))
+    if usual <= 2:
+        return float(np.mean(np.abs(lasts - usual) <= 1)) > _REGULAR and float(np.mean(lasts == 1)) < 1 - HELD_SHARE
+    return float(np.quantile(lasts, 0.2)) >= _SHORTEST * usual
 
 
 def changes(epoch: Float[np.ndarray, " T"]) -> Bool[np.ndarray, " T"]:
     """Rows in which an epoch column holds another number than in the row before; NaN: nothing has arrived yet."""
     known = np.isfinite(epoch)
-    new = known.copy()
+    new: Bool[np.ndarray, " T"] = known.copy()
     new[1:] &= ~(known[:-1] & (epoch[1:] == epoch[:-1]))
     return new
 
@@ -46,12 +57,12 @@ def fresh_rows(
 
     Not held: every value. Held: where the epoch column changes, or, without one, where any channel changed.
     """
-    finite = np.isfinite(value)
+    fresh: Bool[np.ndarray, "T C"] = np.isfinite(value)
     if epoch is not None:
-        return finite & changes(epoch)[:, None]
-    if held:
-        return finite & ~repeats(value)[:, None]
-    return finite
+        fresh &= changes(epoch)[:, None]
+    elif held:
+        fresh &= ~repeats(value)[:, None]
+    return fresh
 
 
 def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"]) -> float:
@@ -59,5 +70,5 @@ def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"]
 
     A long standstill, where a held value cannot change, is one gap among many and does not move the median.
     """
-    at = time[fresh.any(axis=1)]
+    at: Float[np.ndarray, " N"] = time[fresh.any(axis=1)]
     return float(np.median(np.diff(at))) if len(at) > 1 else float("nan")

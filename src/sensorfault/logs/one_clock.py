@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.logs.clock import GAP
+from sensorfault.logs.phrase import counted
 from sensorfault.logs.stream import Stream
 
 SAME_S = 1e-6  # two clocks' readings this near are one time
@@ -78,13 +79,12 @@ def _placed(
     notes = []
     if outside:
         notes.append(
-            f"{stream.name}: {outside} rows lie before the first or after the last row of {fastest.name}, "
-            "whose rows are the log's ticks, and were left out."
+            f"{stream.name}: {counted(outside, 'row')} before the first or after the last row of {fastest.name}, whose "
+            "rows are the log's ticks, left out."
         )
     if len(rows) > len(later):
-        notes.append(
-            f"{stream.name}: {len(rows) - len(later)} rows fell on the same tick as the row after them and gave way to it."
-        )
+        lost = counted(len(rows) - len(later), "row")
+        notes.append(f"{stream.name}: {lost} fell on the tick of a later row and gave way to it.")
     return value, fresh, notes
 
 

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.formats import READERS
 from sensorfault.logs.table import LogError
-from sensorfault.logs.vehicle import FileEntry, VehicleFile
+from sensorfault.logs.vehicle import VehicleFile
 
 Where = str | Path | Sequence[str | Path]
 VEHICLE = "vehicle.toml"

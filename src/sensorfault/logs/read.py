@@ -13,7 +13,7 @@ from sensorfault.logs.stream import Stream, read_stream
 from sensorfault.logs.table import Log
 from sensorfault.logs.vehicle import VehicleFile
 
-GUESSED = "No vehicle.toml was given: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
+GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
 
 
 def read(path: Where, vehicle: str | Path | VehicleFile | None = None, resample: Resample = "hold") -> Log:

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
+from jaxtyping import Float
 
-from sensorfault.logs.gps_time import unix_from_gps_calendar, unix_from_gps_week
+from sensorfault.logs.gps_time import WEEK_S, unix_from_gps_calendar, unix_from_gps_week
 from sensorfault.logs.source import Source
 from sensorfault.logs.table import LogError
 
@@ -58,12 +59,14 @@ def _unix(frame: pl.DataFrame, clock: str) -> np.ndarray:
     """Both columns of the time -> Unix time [s]."""
     if "/" in frame["date"][0]:
         stamp = (frame["date"] + " " + frame["clock"]).str.to_datetime("%Y/%m/%d %H:%M:%S%.f", time_unit="us")
-        calendar = stamp.to_physical().to_numpy() / 1e6
+        calendar: Float[np.ndarray, " T"] = stamp.to_physical().to_numpy() / 1e6
         ahead = {"GPST": calendar[0] - unix_from_gps_calendar(calendar[0]), "UTC": 0.0, "JST": 9 * 3600.0}[clock]
-        return calendar - ahead
+        unix: Float[np.ndarray, " T"] = calendar - ahead
+        return unix
     week, seconds = frame["date"].cast(pl.Float64).to_numpy(), frame["clock"].cast(pl.Float64).to_numpy()
     zero = unix_from_gps_week(week[0], seconds[0])
-    return zero + (week - week[0]) * 604800.0 + (seconds - seconds[0])
+    time: Float[np.ndarray, " T"] = zero + (week - week[0]) * WEEK_S + (seconds - seconds[0])
+    return time
 
 
 def read_tag(path: Path, stream: Path, counter_s: np.ndarray, line: np.ndarray) -> tuple[float, float]:

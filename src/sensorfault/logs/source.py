@@ -23,16 +23,28 @@ class Source:
     first_line: int = 0
     notes: tuple[str, ...] = ()
 
+    def place(self, row: int) -> str:
+        """Where a row stands in the file, for a person."""
+        return f"line {row + self.first_line}" if self.first_line else f"row {row + 1}"
+
+    def any_column(self, name: str) -> pl.Series:
+        """One column as it is, numbers or not.
+
+        Raises:
+            LogError: no such column.
+        """
+        if name not in self.frame.columns:
+            known = ", ".join(self.frame.columns)
+            raise LogError(f"{self.path}: there is no column '{name}'; take one of {known}.")
+        return self.frame[name]
+
     def column(self, name: str) -> pl.Series:
         """One column as numbers: float64, or int64 where a float could not hold it (nanoseconds since 1970).
 
         Raises:
             LogError: no such column, or a cell that is no number.
         """
-        if name not in self.frame.columns:
-            known = ", ".join(self.frame.columns)
-            raise LogError(f"{self.path}: there is no column '{name}'; take one of {known}.")
-        column = self.frame[name]
+        column = self.any_column(name)
         if column.dtype == pl.Int64 or column.dtype == pl.Float64:
             return column
         if column.dtype.is_numeric() or column.dtype == pl.Boolean:
@@ -41,9 +53,8 @@ class Source:
         bad = (number.is_null() & column.is_not_null()).arg_true()
         if len(bad):
             row = int(bad[0])
-            where = f"line {row + self.first_line}" if self.first_line else f"row {row + 1}"
             raise LogError(
-                f"{self.path}: {where}, column '{name}' holds '{column[row]}', which is not a number; "
+                f"{self.path}: {self.place(row)}, column '{name}' holds '{column[row]}', which is not a number; "
                 "mend the cell, or leave the column out of vehicle.toml."
             )
         return number

@@ -7,12 +7,12 @@ import polars as pl
 from jaxtyping import Bool, Float
 
 from sensorfault.logs.clock import Clock, read_clock
+from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows, looks_held, share_repeated, usual_period_s
 from sensorfault.logs.rtklib import read_tag
 from sensorfault.logs.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
-from sensorfault.logs.vehicle import ChannelEntry, FileEntry, SensorEntry
 
 
 @dataclass(frozen=True)
@@ -54,14 +54,16 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         start, rate = read_tag(source.path.parent / file.tag, source.path, counter, clock.rows + source.first_line)
         zero = start + rate * clock.zero_s + file.offset_s
         notes.append(
-            f"{source.path.name}: {file.tag} ties its counter to GPS time; the counter runs {abs(rate - 1) * 1e6:.1f} ppm "
-            f"{'slow' if rate > 1 else 'fast'}, which was corrected."
+            f"{source.path.name}: {file.tag} ties its counter to GPS time; the counter runs "
+            f"{abs(rate - 1) * 1e6:.1f} ppm {'slow' if rate > 1 else 'fast'}, which was corrected."
         )
     time = clock.time * rate
     columns, marks, gaps = [], [], _Gaps(source)
     described = []
     for sensor in sensors:
-        value = np.column_stack([_channel(source, channel, clock, gaps) for channel in sensor.channels])
+        value = np.column_stack(
+            [_channel(source, channel, clock, gaps, sensor.period_s is not None) for channel in sensor.channels]
+        )
         fresh = _fresh(source, sensor, value, clock)
         period = sensor.period_s or usual_period_s(time, fresh)
         described.append(Sensor(sensor.name, period, sensor.held, sensor.watch))
@@ -96,14 +98,13 @@ class _Gaps:
         said = []
         for what, entries in self.found.items():
             names = ", ".join(f"'{column}' ({count})" for column, count, _ in entries)
-            row = min(row for _, _, row in entries)
-            place = f"line {row + self.source.first_line}" if self.source.first_line else f"row {row + 1}"
-            said.append(f"{self.source.path.name}: cells {what} in {names}, first in {place}; read as no value.")
+            first = self.source.place(min(row for _, _, row in entries))
+            said.append(f"{self.source.path.name}: cells {what} in {names}, first in {first}; read as no value.")
         return said
 
 
-def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps) -> np.ndarray:
-    """One column in SI on the kept rows, NaN where it holds no value."""
+def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, silent: bool) -> np.ndarray:
+    """One column in SI on the kept rows, NaN where it holds no value; `silent`: it may hold none at all."""
     value = source.column(channel.column).cast(pl.Float64).to_numpy()
     infinite, empty = np.isinf(value), np.isnan(value)
     gaps.see("are infinite", channel.column, infinite)
@@ -111,10 +112,13 @@ def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps) -
     absent = infinite | empty
     if channel.missing is not None:
         absent |= value == channel.missing
-    if absent.all():
-        raise LogError(f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml.")
-    si = to_si(value, channel.unit)
-    return np.where(absent, np.nan, si)[clock.rows]
+    if absent.all() and not silent:
+        raise LogError(
+            f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml, or write "
+            "period_s into its sensor if that was silent."
+        )
+    si: Float[np.ndarray, " T"] = np.where(absent, np.nan, to_si(value, channel.unit))[clock.rows]
+    return si
 
 
 def _fresh(source: Source, sensor: SensorEntry, value: np.ndarray, clock: Clock) -> np.ndarray:
@@ -130,21 +134,25 @@ def _epoch(source: Source, name: str | None, clock: Clock) -> np.ndarray | None:
     """An epoch column as numbers that change when it does."""
     if name is None:
         return None
-    column = source.frame[name] if name in source.frame.columns else source.column(name)
+    column = source.any_column(name)
     if not column.dtype.is_numeric():
         column = column.rle_id().set(column.is_null(), None)
-    return column.cast(pl.Float64).fill_null(np.nan).to_numpy()[clock.rows]
+    epoch: Float[np.ndarray, " T"] = column.cast(pl.Float64).fill_null(np.nan).to_numpy()[clock.rows]
+    return epoch
 
 
 def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, period: float) -> list[str]:
     share = share_repeated(value)
+    if sensor.held and not np.isfinite(period):
+        return [f"{name}: sensor '{sensor.name}' is held, and fewer than two measurements came."]
     if sensor.held:
         return [
-            f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat, a measurement comes every {period:.3g} s."
+            f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat, a measurement comes every "
+            f"{period:.3g} s."
         ]
     if looks_held(value):
         return [
-            f"{name}: {share:.0%} of the rows of sensor '{sensor.name}' repeat the row before, yet count as measurements; "
+            f"{name}: {share:.0%} of the rows of sensor '{sensor.name}' repeat the row before, yet count as new; "
             f"if the file holds the last one, write held = true in [sensor.{sensor.name}]."
         ]
     return []

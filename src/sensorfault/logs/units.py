@@ -49,6 +49,9 @@ UNITS: dict[str, tuple[str, float]] = {
     "Hz": ("Hz", 1.0),
     "rpm": ("rad/s", 2 * np.pi / 60),
     "degC": ("degC", 1.0),
+    "dB": ("dB", 1.0),
+    "dBm": ("dBm", 1.0),
+    "dB-Hz": ("dB-Hz", 1.0),
     "s": ("s", 1.0),
     "ms": ("s", 1e-3),
     "us": ("s", 1e-6),
@@ -81,8 +84,13 @@ def known(unit: str) -> bool:
     return unit in UNITS or unit in _SPELLINGS
 
 
+def spelled(unit: str) -> str:
+    """The unit as it is spelled here: `m/s2` is `m/s^2`."""
+    return _SPELLINGS.get(unit, unit)
+
+
 def _factor(unit: str) -> tuple[str, float]:
-    return UNITS.get(_SPELLINGS.get(unit, unit), (unit, 1.0))
+    return UNITS.get(spelled(unit), (unit, 1.0))
 
 
 def si_unit(unit: str) -> str:

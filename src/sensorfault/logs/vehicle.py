@@ -23,57 +23,17 @@ speed = { column = "speed", unit = "km/h" }
 range = { column = "range", unit = "m", missing = -1 }    # -1 stands for no value
 """
 
-import json
 import tomllib
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
+from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.table import LogError
+from sensorfault.logs.toml_table import TomlTable
+from sensorfault.logs.toml_text import file_lines, quote, sensor_lines
 from sensorfault.logs.units import UNITS, known
 
 TIME_UNITS = ("s", "ms", "us", "ns", "iso8601")
-
-
-@dataclass(frozen=True)
-class ChannelEntry:
-    """One column that is a channel. `missing`: the number that stands for no value."""
-
-    name: str
-    column: str
-    unit: str = ""
-    missing: float | None = None
-    epoch: str | None = None
-    why: str = field(default="", compare=False)
-
-
-@dataclass(frozen=True)
-class SensorEntry:
-    """One sensor and the file it is in. `why` (here and elsewhere): the reason of a guess, written as a comment."""
-
-    name: str
-    channels: tuple[ChannelEntry, ...]
-    file: str = "log"
-    held: bool = False
-    epoch: str | None = None
-    watch: bool = True
-    period_s: float | None = None
-    why: str = field(default="", compare=False)
-
-
-@dataclass(frozen=True)
-class FileEntry:
-    """One file and its clock."""
-
-    name: str = "log"
-    path: str | None = None
-    time: str | None = None
-    unit: str = "s"
-    offset_s: float = 0.0
-    tag: str | None = None
-    why: str = field(default="", compare=False)
-    left_out: tuple[tuple[str, str], ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -114,56 +74,25 @@ class VehicleFile:
             table = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
             raise LogError(f"{where}: this is not TOML ({error}); mend that line.") from None
-        return _vehicle(_Table(table, where, ""), where)
+        return _vehicle(TomlTable(table, where, ""), where)
+
+    def to_toml(self) -> str:
+        """The TOML text, with the reason of each guess as a comment; it parses back to the same."""
+        lines = [*(f"# {note}" for note in self.notes), "[vehicle]", f"name = {quote(self.name)}"]
+        if self.epoch_s is not None:
+            lines.append(f"epoch_s = {self.epoch_s!r}")
+        if self.zero_s is not None:
+            lines.append(f"zero_s = {self.zero_s!r}")
+        for file in self.files:
+            lines += ["", *file_lines(file)]
+        for sensor in self.sensors:
+            lines += ["", *sensor_lines(sensor, single=len(self.files) == 1)]
+        return "\n".join(lines) + "\n"
 
 
-@dataclass(frozen=True)
-class _Table:
-    """A TOML table that takes no key it does not know."""
-
-    content: Mapping[str, Any]
-    where: str
-    path: str
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.content, Mapping):
-            raise LogError(f"{self.where}: '{self.path}' must be a table; write [{self.path}] above its keys.")
-
-    def only(self, *keys: str) -> None:
-        unknown = [key for key in self.content if key not in keys]
-        if unknown:
-            place = f"[{self.path}]" if self.path else "the top"
-            raise LogError(f"{self.where}: {place} has an unknown key '{unknown[0]}'; take one of {', '.join(keys)}.")
-
-    def tables(self, key: str) -> list[tuple[str, "_Table"]]:
-        path = f"{self.path}.{key}" if self.path else key
-        content = self.content.get(key)
-        if content is None:
-            raise LogError(f"{self.where}: there is no [{path}.NAME] table; write at least one.")
-        inner = _Table(content, self.where, path).content
-        return [(name, _Table(table, self.where, f"{path}.{name}")) for name, table in inner.items()]
-
-    def text(self, key: str) -> str | None:
-        return self._get(key, str, "a text in quotes")
-
-    def flag(self, key: str, default: bool) -> bool:
-        value: bool | None = self._get(key, bool, "true or false")
-        return default if value is None else value
-
-    def number(self, key: str) -> float | None:
-        value = self._get(key, (int, float), "a number")
-        return None if value is None else float(value)
-
-    def _get(self, key: str, kind: type | tuple[type, ...], words: str) -> Any:
-        value = self.content.get(key)
-        if value is not None and (not isinstance(value, kind) or (kind is not bool and isinstance(value, bool))):
-            raise LogError(f"{self.where}: [{self.path}] {key} = {value!r} must be {words}.")
-        return value
-
-
-def _vehicle(top: _Table, where: str) -> VehicleFile:
+def _vehicle(top: TomlTable, where: str) -> VehicleFile:
     top.only("vehicle", "file", "sensor")
-    head = _Table(top.content.get("vehicle", {}), where, "vehicle")
+    head = TomlTable(top.content.get("vehicle", {}), where, "vehicle")
     head.only("name", "epoch_s", "zero_s")
     files = tuple(_file(name, table) for name, table in top.tables("file"))
     sensors = tuple(_sensor(name, table, files) for name, table in top.tables("sensor"))
@@ -174,7 +103,7 @@ def _vehicle(top: _Table, where: str) -> VehicleFile:
     )
 
 
-def _file(name: str, table: _Table) -> FileEntry:
+def _file(name: str, table: TomlTable) -> FileEntry:
     table.only("path", "time", "unit", "offset_s", "tag")
     unit = table.text("unit") or "s"
     if unit not in TIME_UNITS:
@@ -186,7 +115,7 @@ def _file(name: str, table: _Table) -> FileEntry:
     )
 
 
-def _sensor(name: str, table: _Table, files: tuple[FileEntry, ...]) -> SensorEntry:
+def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> SensorEntry:
     table.only("file", "held", "epoch", "watch", "period_s", "channel")
     file = table.text("file")
     if file is None:
@@ -214,7 +143,7 @@ def _sensor(name: str, table: _Table, files: tuple[FileEntry, ...]) -> SensorEnt
     )
 
 
-def _channel(name: str, table: _Table) -> ChannelEntry:
+def _channel(name: str, table: TomlTable) -> ChannelEntry:
     table.only("column", "unit", "missing", "epoch")
     column, unit = table.text("column"), table.text("unit") or ""
     if column is None:
@@ -224,63 +153,3 @@ def _channel(name: str, table: _Table) -> ChannelEntry:
             f"{table.where}: [{table.path}] unit = '{unit}' is unknown; take one of {', '.join(filter(None, UNITS))}."
         )
     return ChannelEntry(name, column, unit, table.number("missing"), table.text("epoch"))
-
-
-def write_vehicle_toml(vehicle: VehicleFile) -> str:
-    """The TOML text of a description, with the reason of each guess as a comment; parses back to the same."""
-    lines = [*(f"# {note}" for note in vehicle.notes), "[vehicle]", f"name = {_quote(vehicle.name)}"]
-    if vehicle.epoch_s is not None:
-        lines.append(f"epoch_s = {vehicle.epoch_s!r}")
-    if vehicle.zero_s is not None:
-        lines.append(f"zero_s = {vehicle.zero_s!r}")
-    for file in vehicle.files:
-        lines += ["", *_file_lines(file)]
-    for sensor in vehicle.sensors:
-        lines += ["", *_sensor_lines(sensor, single=len(vehicle.files) == 1)]
-    return "\n".join(lines) + "\n"
-
-
-def _file_lines(file: FileEntry) -> list[str]:
-    lines = [f"[file.{_key(file.name)}]"]
-    lines += [
-        f"{key} = {_quote(value)}" for key, value in (("path", file.path), ("time", file.time)) if value is not None
-    ]
-    lines.append(f"unit = {_quote(file.unit)}" + (f"  # {file.why}" if file.why else ""))
-    if file.offset_s:
-        lines.append(f"offset_s = {file.offset_s!r}")
-    if file.tag is not None:
-        lines.append(f"tag = {_quote(file.tag)}")
-    if file.left_out:
-        lines.append("# Columns left out:")
-        lines += [f"#   {column}: {reason}" for column, reason in file.left_out]
-    return lines
-
-
-def _sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
-    lines = [f"[sensor.{_key(sensor.name)}]" + (f"  # {sensor.why}" if sensor.why else "")]
-    if not (single and sensor.file == "log"):
-        lines.append(f"file = {_quote(sensor.file)}")
-    if sensor.held:
-        lines.append("held = true")
-    if sensor.epoch is not None:
-        lines.append(f"epoch = {_quote(sensor.epoch)}")
-    if not sensor.watch:
-        lines.append("watch = false")
-    if sensor.period_s is not None:
-        lines.append(f"period_s = {sensor.period_s!r}")
-    lines.append(f"[sensor.{_key(sensor.name)}.channel]")
-    for channel in sensor.channels:
-        cell = f"column = {_quote(channel.column)}, unit = {_quote(channel.unit)}"
-        cell += f", missing = {channel.missing!r}" if channel.missing is not None else ""
-        cell += f", epoch = {_quote(channel.epoch)}" if channel.epoch is not None else ""
-        lines.append(f"{_key(channel.name)} = {{ {cell} }}" + (f"  # {channel.why}" if channel.why else ""))
-    return lines
-
-
-def _quote(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
-
-
-def _key(name: str) -> str:
-    bare = name.isascii() and name.replace("_", "").replace("-", "").isalnum()
-    return name if bare else _quote(name)

@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from sensorfault.logs.units import known
+from sensorfault.logs.units import known, spelled
 
 # Names of what is no measurement of motion: quality, state, bookkeeping. It may be added by hand.
 _QUALITY = re.compile(
@@ -73,9 +73,9 @@ def read_name(column: str) -> Meaning:
     plain, unit = _split_unit(column)
     name = "_".join(_tokens(plain))
     bare = name
-    for ending, spelled in _UNIT_ENDINGS:
+    for ending, written in _UNIT_ENDINGS:
         if name.endswith("_" + ending):
-            bare, unit = name[: -len(ending) - 1], unit or spelled
+            bare, unit = name[: -len(ending) - 1], unit or written
             break
     if _TIME.search(bare) and not re.search(r"(^|_)(lat|lon)", bare):
         return Meaning("time", bare, "", unit)
@@ -117,7 +117,7 @@ def _split_unit(column: str) -> tuple[str, str]:
     unit = match[1].strip()
     unit = unit if known(unit) else unit[:1].lower() + unit[1:]
     rest = re.sub(r"\([^()]*\)", " ", column[: match.start()])
-    return rest, unit if known(unit) else ""
+    return rest, spelled(unit) if known(unit) else ""
 
 
 def _tokens(name: str) -> list[str]:

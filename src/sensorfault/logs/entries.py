@@ -1,0 +1,43 @@
+"""The entries of a vehicle file: channels, sensors, files. `why`: the reason of a guess, written as a comment."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ChannelEntry:
+    """One column that is a channel. `missing`: the number that stands for no value."""
+
+    name: str
+    column: str
+    unit: str = ""
+    missing: float | None = None
+    epoch: str | None = None
+    why: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True)
+class SensorEntry:
+    """One sensor and the file it is in. `why` (here and elsewhere): the reason of a guess, written as a comment."""
+
+    name: str
+    channels: tuple[ChannelEntry, ...]
+    file: str = "log"
+    held: bool = False
+    epoch: str | None = None
+    watch: bool = True
+    period_s: float | None = None
+    why: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True)
+class FileEntry:
+    """One file and its clock."""
+
+    name: str = "log"
+    path: str | None = None
+    time: str | None = None
+    unit: str = "s"
+    offset_s: float = 0.0
+    tag: str | None = None
+    why: str = field(default="", compare=False)
+    left_out: tuple[tuple[str, str], ...] = field(default=(), compare=False)

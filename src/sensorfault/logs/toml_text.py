@@ -1,0 +1,55 @@
+"""Entries of a vehicle file as TOML text, with their reasons as comments."""
+
+import json
+
+from sensorfault.logs.entries import FileEntry, SensorEntry
+
+
+def file_lines(file: FileEntry) -> list[str]:
+    """The table [file.NAME]."""
+    lines = [f"[file.{key_of(file.name)}]"]
+    lines += [
+        f"{key} = {quote(value)}" for key, value in (("path", file.path), ("time", file.time)) if value is not None
+    ]
+    lines.append(f"unit = {quote(file.unit)}" + (f"  # {file.why}" if file.why else ""))
+    if file.offset_s:
+        lines.append(f"offset_s = {file.offset_s!r}")
+    if file.tag is not None:
+        lines.append(f"tag = {quote(file.tag)}")
+    if file.left_out:
+        lines.append("# Columns left out:")
+        lines += [f"#   {column}: {reason}" for column, reason in file.left_out]
+    return lines
+
+
+def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
+    """The tables [sensor.NAME] and [sensor.NAME.channel]; `single`: the log is one file, so it need not be named."""
+    lines = [f"[sensor.{key_of(sensor.name)}]" + (f"  # {sensor.why}" if sensor.why else "")]
+    if not (single and sensor.file == "log"):
+        lines.append(f"file = {quote(sensor.file)}")
+    if sensor.held:
+        lines.append("held = true")
+    if sensor.epoch is not None:
+        lines.append(f"epoch = {quote(sensor.epoch)}")
+    if not sensor.watch:
+        lines.append("watch = false")
+    if sensor.period_s is not None:
+        lines.append(f"period_s = {sensor.period_s!r}")
+    lines.append(f"[sensor.{key_of(sensor.name)}.channel]")
+    for channel in sensor.channels:
+        cell = f"column = {quote(channel.column)}, unit = {quote(channel.unit)}"
+        cell += f", missing = {channel.missing!r}" if channel.missing is not None else ""
+        cell += f", epoch = {quote(channel.epoch)}" if channel.epoch is not None else ""
+        lines.append(f"{key_of(channel.name)} = {{ {cell} }}" + (f"  # {channel.why}" if channel.why else ""))
+    return lines
+
+
+def quote(text: str) -> str:
+    """A text as TOML writes it."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def key_of(name: str) -> str:
+    """A key, in quotes where it must be."""
+    bare = name.isascii() and name.replace("_", "").replace("-", "").isalnum()
+    return name if bare else quote(name)
