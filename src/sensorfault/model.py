@@ -17,7 +17,8 @@ class Model:
     """What `fit` makes and `detect` needs.
 
     `tests` names every test in the order of the monitor's branches, as (statistic, channel path or None). `tick_s` is
-    the clock it was fitted on. `summary`: how it was fitted and what that run measured, for people.
+    the clock it was fitted on, `sigma` the standard deviation of each channel's healthy residual [SI], `summary` how it
+    was fitted and what that run measured, for people.
     """
 
     method: str
@@ -27,6 +28,7 @@ class Model:
     tests: tuple[tuple[str, str | None], ...]
     watched: tuple[bool, ...]
     tick_s: float
+    sigma: tuple[float, ...]
     summary: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -79,4 +81,5 @@ def hold_s(log: Log) -> Float[np.ndarray, " C"]:
 
 def complete(log: Log, watched: Bool[np.ndarray, " C"]) -> Bool[np.ndarray, " T"]:
     """Rows in which every watched channel has a new value."""
-    return (log.fresh & np.isfinite(log.value))[:, watched].all(axis=1)
+    rows: Bool[np.ndarray, " T"] = (log.fresh & np.isfinite(log.value))[:, watched].all(axis=1)
+    return rows

@@ -19,22 +19,22 @@ from sensorfault.types import Report, Sample
 CHUNK = 8192
 
 Progress = Callable[[float], None]
+Numbers = np.ndarray | Array  # on the device while it runs, NumPy afterwards
 
 
 class Replayed(NamedTuple):
     """What a replay keeps of every sample, stacked over time. Scores are NaN where a test had nothing to test."""
 
-    channel: Int8[np.ndarray, "T C"]
-    sensor: Int8[np.ndarray, "T S"]
-    sample: Int8[np.ndarray, " T"]
-    scores: tuple[Float[np.ndarray, "T K"], ...]
-    limits: tuple[Float[np.ndarray, "T K"], ...]
-    measured: Float[np.ndarray, "T C"]
-    residual: Float[np.ndarray, "T C"]
-    valid: Bool[np.ndarray, "T C"]
-    value: Float[np.ndarray, "T C"]  # measured, or its stand-in [SI]
-    believed: Bool[np.ndarray, "T C"]  # whether `value` may be believed
-    silence: Float[np.ndarray, "T C"]
+    channel: Int8[Numbers, "T C"]
+    sensor: Int8[Numbers, "T S"]
+    sample: Int8[Numbers, " T"]
+    scores: tuple[Float[Numbers, "T K"], ...]
+    limits: tuple[Float[Numbers, "T K"], ...]
+    residual: Float[Numbers, "T C"]
+    valid: Bool[Numbers, "T C"]
+    value: Float[Numbers, "T C"]  # measured, or its stand-in [SI]
+    believed: Bool[Numbers, "T C"]  # whether `value` may be believed
+    silence: Float[Numbers, "T C"]
 
 
 def _keep(report: Report) -> Replayed:
@@ -44,7 +44,6 @@ def _keep(report: Report) -> Replayed:
         report.verdict.sample,
         tuple(jnp.where(score.valid, score.value, jnp.nan) for score in report.scores),
         report.limits,
-        report.residual.measured,
         report.residual.value,
         report.residual.valid,
         report.trust.value,
@@ -90,8 +89,8 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
         real = np.arange(start, start + CHUNK) < total
         chunk = samples(log.time[rows], log.value[rows], log.fresh[rows])
         state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
-        told.append(jax.tree.map(lambda x, n=int(real.sum()): np.asarray(x)[:n], kept))
+        told.append(jax.tree.map(np.asarray, kept))
         if progress:
             progress(min(1.0, (start + CHUNK) / total))
-    stacked: Replayed = jax.tree.map(lambda *parts: np.concatenate(parts), *told)
+    stacked: Replayed = jax.tree.map(lambda *parts: np.concatenate(parts)[:total], *told)
     return stacked

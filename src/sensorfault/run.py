@@ -64,15 +64,16 @@ def fleet(
 
 
 class Now(NamedTuple):
-    """What Live says of the sample it was just given."""
+    """What a live step says of the sample it was just given."""
 
     channel: Int8[np.ndarray, " C"]
     sensor: Int8[np.ndarray, " S"]
     sample: int
-    score: Float[np.ndarray, " K"]  # of all branches, one after the other
+    score: Float[np.ndarray, " K"]  # of all branches, one after the other; NaN where there was nothing to test
     limit: Float[np.ndarray, " K"]
     value: Float[np.ndarray, " C"]  # measured, or its stand-in [SI]
     residual: Float[np.ndarray, " C"]  # [SI]
+    valid: Bool[np.ndarray, " C"]  # whether the residual was tested
     silence: Float[np.ndarray, " C"]  # [s]
 
 
@@ -81,15 +82,16 @@ def _tell(report: Report) -> tuple[Array, ...]:
         report.verdict.channel,
         report.verdict.sensor,
         report.verdict.sample,
-        jnp.concatenate([score.value for score in report.scores]),
+        jnp.concatenate([jnp.where(score.valid, score.value, jnp.nan) for score in report.scores]),
         jnp.concatenate(report.limits),
         report.trust.value,
         report.residual.value,
+        report.residual.valid,
         report.silence,
     )
 
 
-class Live:
+class Stepper:
     """One sample in, one verdict out.
 
     Two things make a live step cheap. State, sample and answer cross into the compiled step as one vector each. And the
@@ -139,5 +141,18 @@ class Live:
             row[2 + 2 * c :] = np.concatenate([np.ravel(x) for x in jax.tree.leaves(block)])
         self._state, told = self._step(self._state, row)
         answer = np.asarray(told)
-        channel, sensor, sample, *rest = (answer[cut] for cut in self._cuts)
-        return Now(channel.astype(np.int8), sensor.astype(np.int8), int(sample[0]), *rest)
+        channel, sensor, sample, score, limit, filled, residual, valid, silence = (answer[cut] for cut in self._cuts)
+        return Now(
+            channel.astype(np.int8),
+            sensor.astype(np.int8),
+            int(sample[0]),
+            score,
+            limit,
+            filled,
+            residual,
+            valid > 0,
+            silence,
+        )
+
+
+Live = Stepper  # the name helper tests use until they are moved

@@ -1,0 +1,42 @@
+"""The command line: one verb a file. Nothing slow is imported before a verb runs."""
+
+import sys
+
+import click
+
+from sensorfault.cli import demo, detect, evaluate, fit, init, inject, methods, report
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="sensorfault")
+def cli() -> None:
+    """Notice when a vehicle's sensor lies, name it and the kind of fault.
+
+    Start with `sensorfault demo`, or with a log of your own: `sensorfault init LOG`, then `sensorfault detect LOG`.
+    LOG is a CSV, Parquet or RTKLIB .pos file, or a folder of such files of one drive.
+    """
+
+
+for verb in (demo, init, fit, detect, inject, evaluate, report, methods):
+    cli.add_command(verb.command)
+
+
+def main() -> None:
+    """Run the command line: bad input is one sentence on stderr and exit code 2."""
+    from sensorfault.cli.errors import sentence_of
+
+    try:
+        cli(standalone_mode=False)
+    except click.exceptions.Exit as done:
+        sys.exit(done.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        sys.exit(130)
+    except click.ClickException as error:
+        click.echo(f"sensorfault: {error.format_message()}", err=True)
+        sys.exit(2)
+    except (ValueError, OSError) as error:
+        sentence = sentence_of(error)
+        if sentence is None:
+            raise
+        click.echo(f"sensorfault: {sentence}", err=True)
+        sys.exit(2)

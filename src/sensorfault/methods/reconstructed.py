@@ -64,4 +64,5 @@ def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], 
     )
     tests = (("norm", None), *(("repeats", channel.path) for channel in log.channels))
     told = {"training_log": log.name, "training_s": log.duration_s, "rows": int(rows.sum()), "not_watched": reasons}
-    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, told)
+    sigma = tuple(np.sqrt(np.diag(np.asarray(deaf.residual.cov))).tolist())
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)

@@ -1,4 +1,4 @@
-"""The loop: residual, tests, decision, exclusion, recovery, and back into every state; the one place where it closes."""
+"""The loop: residual, tests, decision, exclusion, recovery, and back into every state; the only place it closes."""
 
 from typing import Any, NamedTuple
 
@@ -109,8 +109,9 @@ class Monitor(eqx.Module):
             self.decision.update(decided, trust),
             self.recovery.update(recovered, trust),
         )
-        kept = (keep_finite(new, old) for new, old in zip(parts, state[:4], strict=True))
-        after = MonitorState(*kept, sample.value, jnp.where(arrived, sample.time, state.seen))
+        kept = [keep_finite(new, old) for new, old in zip(parts, state[:4], strict=True)]
+        seen = jnp.where(arrived, sample.time, state.seen)
+        after = MonitorState(kept[0], kept[1], kept[2], kept[3], sample.value, seen)
         return after, Report(residual, first.scores, first.limits, verdict, trust, silence)
 
     def _intake(

@@ -20,5 +20,5 @@ def repeat_limit(runs: Float[np.ndarray, "T C"], period_s: float) -> Float[np.nd
     # p^n 3600 / period = rate
     chance = np.log(REPEATS_PER_HOUR * period_s / 3600) / np.log(p)
     longest = np.nan_to_num(runs).max(axis=0)
-    limit: Float[np.ndarray, " C"] = np.maximum(np.maximum(np.ceil(chance), 2 * longest), LEAST_RUN)
-    return limit
+    limit = np.maximum(np.maximum(np.ceil(chance), 2 * longest), LEAST_RUN)
+    return np.where(tested.any(axis=0), limit, np.inf)

@@ -42,5 +42,14 @@ class Scaling:
         """The fitted residual generator; `residual`: what it leaves of the healthy rows, still scaled to [-1, 1]."""
         # covariance in SI; a channel that is not watched gets unit variance, since a covariance is never singular
         cov = np.cov(residual.T) * np.outer(self.half, self.half) + np.diag(np.where(self.watched, 0.0, 1.0))
-        parts = (weights, bias, output, offset, self.center, self.half, cov, self.watched)
-        return Reconstruction(*(jnp.asarray(part) for part in parts), activation=activation)
+        return Reconstruction(
+            weights=jnp.asarray(weights),
+            bias=jnp.asarray(bias),
+            output=jnp.asarray(output),
+            offset=jnp.asarray(offset),
+            center=jnp.asarray(self.center),
+            half=jnp.asarray(self.half),
+            cov=jnp.asarray(cov),
+            watched=jnp.asarray(self.watched),
+            activation=activation,
+        )

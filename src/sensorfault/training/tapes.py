@@ -10,5 +10,4 @@ from sensorfault.replay import replay_log
 
 def score_tape(deaf: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
     """The scores of every branch over a log, NaN where a test had nothing to test."""
-    kept = replay_log(deaf, log)
-    return kept.scores
+    return tuple(np.asarray(score) for score in replay_log(deaf, log).scores)

@@ -35,24 +35,24 @@ class Reconstruction(eqx.Module):
     def init(self) -> Float[Array, " C"]:
         return self.center
 
-    def reconstruct(self, value: Float[Array, " C"]) -> Float[Array, " C"]:
-        """What the network makes of one sample [SI]."""
+    def evaluate(self, trusted: Float[Array, " C"], sample: Sample) -> tuple[Residual, _Work]:
+        value = jnp.where(sample.present, sample.value, trusted)
+        f = ACTIVATIONS[self.activation]
         # x in [-1, 1]
         x = (value - self.center) / self.half
         # (3) h_j = f(sum_i w_ji x_i + b_j)
-        h = ACTIVATIONS[self.activation](self.weights @ x + self.bias)
+        a = self.weights @ x + self.bias
         # (4) x~_k = sum_j beta_jk h_j
-        return (self.output @ h + self.offset) * self.half + self.center
-
-    def evaluate(self, trusted: Float[Array, " C"], sample: Sample) -> tuple[Residual, _Work]:
-        value = jnp.where(sample.present, sample.value, trusted)
-        expected = jnp.where(self.watched, self.reconstruct(value), value)
+        copy = self.output @ f(a) + self.offset
+        # A copy of a faulty value is no stand-in for it: x~_k once more, with x_k as it was when last trusted.
+        a_k = a + (self.weights * ((trusted - value) / self.half)).T
+        stand_in = (self.output * f(a_k)).sum(axis=1) + self.offset
         residual = Residual(
             time=sample.time,
-            value=value - expected,
+            value=jnp.where(self.watched, (x - copy) * self.half, 0.0),
             cov=self.cov,
             measured=value,
-            expected=expected,
+            expected=jnp.where(self.watched, stand_in * self.half + self.center, trusted),
             noise=jnp.diagonal(self.cov),
             valid=sample.fresh & self.watched,
             born=sample.born,

@@ -1,0 +1,39 @@
+# Two verbs for newcomers, demo and test; each sets up what it needs in .venv.
+PYTHON ?= python3.11
+BIN := .venv/bin
+
+.PHONY: demo test check real bench clean
+
+demo: .venv/.installed        ## simulate a drive, let its sensors lie, find out
+	$(BIN)/sensorfault demo --out demo
+
+test: .venv/.dev              ## all tests that need nothing but this repository
+	$(BIN)/python -m pytest -n 2 -m "not real" --jaxtyping-packages=sensorfault,beartype.beartype
+
+check: .venv/.dev             ## lint, types, import contract
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
+
+real: .venv/.dev              ## the tests on the real logs in SENSORFAULT_DATA
+	$(BIN)/python -m pytest -n 2 -m real
+
+bench: .venv/.bench           ## ratios against peers, each within one run
+	for file in benchmarks/bench_*.py; do $(BIN)/python $$file || exit; done
+
+.venv/.installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install -q --disable-pip-version-check -c constraints.txt -e .
+	touch $@
+
+.venv/.dev: .venv/.installed
+	$(BIN)/pip install -q --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	touch $@
+
+.venv/.bench: .venv/.installed
+	$(BIN)/pip install -q --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	touch $@
+
+clean:                        ## remove what make made
+	rm -rf .venv demo

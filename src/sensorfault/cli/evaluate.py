@@ -1,0 +1,142 @@
+"""`sensorfault evaluate`: how good a method is on a log."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from sensorfault.cli import options, show, work
+
+if TYPE_CHECKING:
+    from sensorfault.evaluation.campaign import Campaign
+    from sensorfault.evaluation.judge import Judgement
+    from sensorfault.logs import Log
+
+
+@click.command("evaluate")
+@options.log_argument
+@options.vehicle_option
+@options.model_option
+@options.method_option
+@options.learn_option
+@click.option(
+    "--truth",
+    "truth_path",
+    type=click.Path(path_type=Path),
+    help="Faults that are in the log, as 'sensorfault inject' wrote them. Without it, faults are injected here.",
+)
+@click.option("--duration", "duration_s", default=5.0, show_default=True, help="Of each injected fault [s].")
+@click.option("--repeats", default=3, show_default=True, type=click.IntRange(min=1), help="Onsets for each fault.")
+@options.seed_option
+@options.json_option
+def command(
+    log: Path,
+    vehicle: Path | None,
+    model_path: Path | None,
+    method: str,
+    learn: float,
+    truth_path: Path | None,
+    duration_s: float,
+    repeats: int,
+    seed: int,
+    json_path: str | None,
+) -> None:
+    """Measure recall, delay, isolation, recovery and false alarms an hour.
+
+    Limits are frozen on other data than they are judged on: those of the model, or the log's own beginning.
+    """
+    from sensorfault.evaluation.campaign import campaign
+    from sensorfault.evaluation.judge import judge
+    from sensorfault.faults.text import truth_from_json
+
+    truth = truth_from_json(truth_path.read_text()) if truth_path else None
+    table = work.read_log(log, vehicle)
+    ready = work.ready(table, model_path, method, learn, seed)
+    if truth is not None:
+        begun = [fault for fault in truth if fault.start_s >= ready.judged.time[0]]
+        judgement = judge(work.detect(ready.model, ready.judged), begun)
+        _show_judgement(judgement, len(truth) - len(begun), json_path)
+        return
+    with show.progress() as bar:
+        task = bar.add_task("injecting and judging", total=1.0)
+        done = campaign(
+            ready.model,
+            ready.judged,
+            duration_s=duration_s,
+            repeats=repeats,
+            seed=seed,
+            progress=lambda share: bar.update(task, completed=share),
+        )
+    _show_campaign(table, done, json_path)
+
+
+def _alarms(judgement: "Judgement") -> str:
+    minutes = judgement.healthy_hours * 60
+    return (
+        f"False alarms where nothing was injected: {len(judgement.false_alarms)} in {minutes:.1f} min, "
+        f"{show.number(judgement.false_alarms_per_hour)} an hour."
+    )
+
+
+def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None) -> None:
+    columns = ("fault", "found", "delay [s]", "as", "sensor", "channel", "kind")
+    rows = []
+    for outcome in judgement.outcomes:
+        named = outcome.named
+        found = "" if named is None else f"{named.kind} on {named.sensor or '?'}.{named.channel or '*'}"
+        right = tuple(
+            "right" if r else "wrong" for r in (outcome.sensor_right, outcome.channel_right, outcome.kind_right)
+        )
+        delay = show.number(outcome.delay_s)
+        words = f"{show.clock(outcome.fault.start_s)} {show.fault_words(outcome.fault)}"
+        rows.append(
+            (words, "yes" if outcome.found else "no", delay, found, *(right if outcome.found else ("", "", "")))
+        )
+    show.table("Injected faults", columns, rows, json_path != "-")
+    if learned:
+        show.say(f"{learned} faults lie in the part that was fitted on and were not judged.")
+    show.say(_alarms(judgement))
+    show.write_json(
+        json_path,
+        {
+            "outcomes": [asdict(outcome) for outcome in judgement.outcomes],
+            "false_alarms": [event.as_dict() for event in judgement.false_alarms],
+            "false_alarms_per_hour": judgement.false_alarms_per_hour,
+            "healthy_hours": judgement.healthy_hours,
+        },
+    )
+
+
+def _show_campaign(log: "Log", done: "Campaign", json_path: str | None) -> None:
+    columns = (
+        *("fault", "magnitude", "on", "n", "recall %", "chance %", "delay 50 [s]", "95 [s]"),
+        *("sensor %", "channel %", "kind %", "error left %"),
+    )
+    rows = [
+        (
+            *(cell.kind, show.number(cell.magnitude), cell.channel, str(cell.faults)),
+            *(show.percent(cell.recall), show.percent(cell.chance)),
+            *(show.number(cell.delay_p50_s), show.number(cell.delay_p95_s)),
+            *(show.percent(x) for x in (cell.sensor_right, cell.channel_right, cell.kind_right, cell.recovery)),
+        )
+        for cell in done.cells
+    ]
+    show.table(f"{log.name} with injected faults", columns, rows, json_path != "-")
+    show.say(
+        "Magnitudes of short, bias and noise are channel sigmas, of drift sigmas a second, of scale factors, of delay s. "
+        "Chance: an alarm in as long a window with nothing injected. Error left: the stand-in's, of the faulty value's."
+    )
+    show.say(_alarms(done.untouched))
+    show.say(f"Over all faulty samples: AUC {done.auc:.3f}, AUC-PR {done.auc_pr:.3f}.")
+    show.write_json(
+        json_path,
+        {
+            "cells": [asdict(cell) for cell in done.cells],
+            "isolation": done.isolation(),
+            "false_alarms_per_hour": done.untouched.false_alarms_per_hour,
+            "healthy_hours": done.untouched.healthy_hours,
+            "auc": done.auc,
+            "auc_pr": done.auc_pr,
+        },
+    )

@@ -1,0 +1,49 @@
+"""`sensorfault fit`: a healthy log in, a model file out."""
+
+from pathlib import Path
+
+import click
+
+from sensorfault.cli import options, show, work
+
+
+@click.command("fit")
+@options.log_argument
+@options.vehicle_option
+@options.method_option
+@options.out_option(None, "The model file to write.  [default: NAME.sensorfault here]")
+@click.option("--until", "until_s", type=float, help="Use the log only up to this time [s].")
+@click.option("--held-out", default=0.3, show_default=True, help="Share, from the end, to judge instead of fit.")
+@options.seed_option
+@options.json_option
+def command(
+    log: Path,
+    vehicle: Path | None,
+    method: str,
+    out: Path | None,
+    until_s: float | None,
+    held_out: float,
+    seed: int,
+    json_path: str | None,
+) -> None:
+    """Fit a method on a healthy log and measure its false alarms on the part held out."""
+    from sensorfault.methods.catalog import recipe
+    from sensorfault.methods.fit import fit
+    from sensorfault.store import save
+
+    recipe(method)
+    table = work.read_log(log, vehicle)
+    if until_s is not None:
+        table = table.between(end_s=until_s)
+    with show.progress() as bar:
+        task = bar.add_task(f"fitting {method}", total=None)
+        model = fit(table, method, held_out, seed, lambda doing: bar.update(task, description=doing))
+        bar.update(task, total=1, completed=1, description=f"fitted {method}")
+    target = out or Path(f"{table.name}.sensorfault")
+    save(model, target)
+    watched = [c.path for c, w in zip(model.channels, model.watched, strict=True) if w]
+    show.say(f"Watches {', '.join(watched)}.")
+    for sentence in (*work.not_watched(model), *work.rate(model)):
+        show.say(sentence)
+    show.say(f"Wrote {target}.")
+    show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})

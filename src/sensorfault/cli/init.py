@@ -1,0 +1,33 @@
+"""`sensorfault init`: a starter vehicle.toml from an unknown log."""
+
+from pathlib import Path
+
+import click
+
+from sensorfault.cli import options, show
+
+
+@click.command("init")
+@options.log_argument
+@options.out_option(None, "Where to write it.  [default: vehicle.toml beside the log]")
+@click.option("--force", is_flag=True, help="Replace an existing file.")
+def command(log: Path, out: Path | None, force: bool) -> None:
+    """Look at an unknown log and write a vehicle.toml to check and correct.
+
+    Every line is a guess from names and values and says why it was made.
+    """
+    from sensorfault.files import appearing
+    from sensorfault.logs import LogError, guess
+
+    found = guess(log)
+    target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
+    if target.exists() and not force:
+        raise LogError(f"{target} is there already; give another --out, or --force to replace it.")
+    with appearing(target) as temporary:
+        temporary.write_text(found.to_toml())
+    for note in found.notes:
+        show.say(f"  {note}")
+    for sensor in found.sensors:
+        channels = ", ".join(f"{c.name} [{c.unit}]" if c.unit else c.name for c in sensor.channels)
+        show.say(f"  {sensor.name}: {channels}")
+    show.say(f"Wrote {target}: {len(found.sensors)} sensors. Check it, then run 'sensorfault detect {log}'.")

@@ -1,0 +1,45 @@
+"""`sensorfault inject`: a log with faults, and the truth about them."""
+
+from pathlib import Path
+
+import click
+
+from sensorfault.cli import options, show, work
+
+
+@click.command("inject")
+@options.log_argument
+@options.vehicle_option
+@click.option(
+    "--fault",
+    "faults",
+    multiple=True,
+    required=True,
+    metavar="KIND:SENSOR[.CHANNEL]:ONSET:DURATION[:MAGNITUDE[sigma]]",
+    help="Such as bias:gyro.z:120:20:5sigma, jam:gnss:60:10 or short:gyro.x:30:0:0.5; may be given several times. "
+    "KIND is short, bias, drift, jam, miss, noise, scale or delay; times in seconds of the log.",
+)
+@options.out_option(None, "The log to write, .csv or .parquet.")
+@options.seed_option
+@options.json_option
+def command(
+    log: Path, vehicle: Path | None, faults: tuple[str, ...], out: Path | None, seed: int, json_path: str | None
+) -> None:
+    """Put faults into a log. Writes the log, its vehicle.toml and the truth beside it."""
+    from sensorfault.faults.inject import inject
+    from sensorfault.faults.text import parse_fault, truth_to_json
+    from sensorfault.files import appearing
+    from sensorfault.logs import LogError, write
+
+    if out is None:
+        raise LogError("no --out was given; name the log to write, such as --out faulty.csv.")
+    table = work.read_log(log, vehicle)
+    injected = inject(table, [parse_fault(text, table) for text in faults], seed)
+    write(injected.log, out)
+    truth_path = out.with_suffix(".truth.json")
+    with appearing(truth_path) as temporary:
+        temporary.write_text(truth_to_json(injected.truth) + "\n")
+    for fault in injected.truth:
+        show.say(f"  {show.clock(fault.start_s)} to {show.clock(fault.end_s)}: {show.fault_words(fault)}")
+    show.say(f"Wrote {out} and {truth_path}.")
+    show.write_json(json_path, {"log": str(out), "truth": [fault.as_dict() for fault in injected.truth]})

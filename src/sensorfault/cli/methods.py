@@ -1,0 +1,21 @@
+"""`sensorfault methods`: the catalog."""
+
+import click
+
+from sensorfault.cli import options, show
+
+
+@click.command("methods")
+@options.json_option
+def command(json_path: str | None) -> None:
+    """List the methods: what they are made of, where they come from, what they promise."""
+    from sensorfault.methods.catalog import METHODS
+
+    if json_path != "-":
+        rows = [(recipe.name, recipe.title, recipe.source) for recipe in METHODS.values()]
+        show.table("Methods", ("name", "what it is", "source"), rows)
+    listed = [
+        {"name": recipe.name, "title": recipe.title, "source": recipe.source, "promise": recipe.promise}
+        for recipe in METHODS.values()
+    ]
+    show.write_json(json_path, {"methods": listed})

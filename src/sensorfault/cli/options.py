@@ -1,0 +1,35 @@
+"""Arguments and options that several verbs share."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+log_argument = click.argument("log", type=click.Path(path_type=Path))
+vehicle_option = click.option(
+    "--vehicle", type=click.Path(path_type=Path), help="vehicle.toml; by default the one beside the log, else a guess."
+)
+json_option = click.option(
+    "--json", "json_path", type=click.Path(path_type=str), help="Write the answer as JSON; - for standard output."
+)
+method_option = click.option(
+    "--method", default="elm-autoencoder", show_default=True, help="See 'sensorfault methods'."
+)
+model_option = click.option(
+    "--model", "model_path", type=click.Path(path_type=Path), help="A model that 'sensorfault fit' wrote."
+)
+learn_option = click.option(
+    "--learn",
+    default=0.5,
+    show_default=True,
+    type=click.FloatRange(0.05, 0.95),
+    help="Without a model: share of the log to fit on, from its beginning.",
+)
+seed_option = click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
+
+
+def out_option(default: str | None, help: str) -> Any:
+    """--out, with or without a default."""
+    return click.option(
+        "--out", type=click.Path(path_type=Path), default=default, show_default=bool(default), help=help
+    )

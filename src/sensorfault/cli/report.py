@@ -1,0 +1,43 @@
+"""`sensorfault report`: the page of a log."""
+
+from pathlib import Path
+
+import click
+
+from sensorfault.cli import options, show, work
+
+
+@click.command("report")
+@options.log_argument
+@options.vehicle_option
+@options.model_option
+@options.method_option
+@options.learn_option
+@options.out_option("report.html", "The page to write.")
+@click.option(
+    "--truth", "truth_path", type=click.Path(path_type=Path), help="What 'sensorfault inject' did to the log."
+)
+@options.seed_option
+def command(
+    log: Path,
+    vehicle: Path | None,
+    model_path: Path | None,
+    method: str,
+    learn: float,
+    out: Path,
+    truth_path: Path | None,
+    seed: int,
+) -> None:
+    """Write a page: signals, scores against limits, faults, and the verdict on each sensor over time.
+
+    One file, interactive, opens offline.
+    """
+    from sensorfault.evaluation.page import write_page
+    from sensorfault.faults.text import truth_from_json
+
+    truth = truth_from_json(truth_path.read_text()) if truth_path else ()
+    table = work.read_log(log, vehicle)
+    ready = work.ready(table, model_path, method, learn, seed)
+    found = work.detect(ready.model, ready.judged)
+    write_page(found, out, truth, summary=ready.sentences)
+    show.say(f"{len(found.events)} fault events. Wrote {out}.")

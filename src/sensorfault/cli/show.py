@@ -1,0 +1,125 @@
+"""What a person sees: progress and notes on stderr, tables on stdout; JSON where it is asked for."""
+
+import json
+import math
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+    from sensorfault.events import Event
+    from sensorfault.faults.fault import Fault
+
+
+def say(sentence: str) -> None:
+    """One sentence for people, on stderr so that tables and JSON stay clean."""
+    from rich.console import Console
+
+    Console(stderr=True, highlight=False, soft_wrap=True).print(sentence, markup=False)
+
+
+@contextmanager
+def progress() -> Iterator["Progress"]:
+    """A progress display on stderr; one line a task."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=False) as bar:
+        yield bar
+
+
+def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], answer: bool = True) -> None:
+    """A table on stdout; on stderr when JSON has stdout (`answer` False)."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    for name in columns:
+        drawn.add_column(name, justify="right" if name.endswith(("]", "%")) or name in _NUMBERS else "left")
+    for row in rows:
+        drawn.add_row(*(Text(cell) for cell in row))
+    stream = sys.stdout if answer else sys.stderr
+    width = None if stream.isatty() else 120
+    Console(file=stream, width=width, highlight=False).print(drawn)
+
+
+_NUMBERS = {"peak", "limit", "n", "recall", "chance", "magnitude"}
+
+
+def clock(seconds: float | None) -> str:
+    """Seconds as m:ss.cc; an open end as a word."""
+    if seconds is None:
+        return "goes on"
+    minutes, rest = divmod(round(seconds, 2), 60)
+    return f"{int(minutes)}:{rest:05.2f}"
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A few digits, nothing for None and NaN."""
+    return "" if value is None or not math.isfinite(value) else f"{value:.{digits}g}"
+
+
+def percent(value: float) -> str:
+    """A share as a whole percentage, nothing for NaN."""
+    return "" if not math.isfinite(value) else f"{100 * value:.0f}"
+
+
+EVENT_COLUMNS = ("start", "end", "sensor", "channel", "kind", "peak", "limit")
+
+
+def event_row(event: "Event") -> tuple[str, ...]:
+    """One event as a row of EVENT_COLUMNS."""
+    sensor = event.sensor or ("the whole log" if event.kind == "miss" else "unknown which")
+    channel = event.channel or ("" if event.sensor is None else "all")
+    ends = clock(event.start_s), clock(event.end_s)
+    return (*ends, sensor, channel, event.kind, number(event.peak_score), number(event.limit))
+
+
+def events(found: "Sequence[Event]", title: str, answer: bool = True) -> None:
+    """The events as a table, or one sentence that there are none."""
+    if found:
+        table(title, EVENT_COLUMNS, [event_row(event) for event in found], answer)
+    else:
+        say(f"{title}: none.")
+
+
+def fault_words(fault: "Fault") -> str:
+    """An injected fault in a few words."""
+    from sensorfault.faults.fault import OFFSETS
+
+    where = f"{fault.sensor}.{fault.channel}" if fault.channel else fault.sensor
+    unit = " sigma" if fault.sigmas else ""
+    size = f" {fault.magnitude:g}{unit}" if fault.kind in OFFSETS or fault.kind in ("scale", "delay") else ""
+    return f"{fault.kind}{size} on {where}"
+
+
+def plain(value: Any) -> Any:
+    """JSON has no NaN and no infinity: they become null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    return value
+
+
+def write_json(path: str | None, answer: Mapping[str, Any]) -> None:
+    """Write JSON to a file (whole or not at all) or to stdout (`-`); nothing without a path."""
+    if path is None:
+        return
+    text = json.dumps(plain(answer), indent=1, allow_nan=False) + "\n"
+    if path == "-":
+        sys.stdout.write(text)
+        return
+    from sensorfault.files import appearing
+
+    with appearing(Path(path)) as temporary:
+        temporary.write_text(text)

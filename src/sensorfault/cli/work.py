@@ -1,0 +1,109 @@
+"""What verbs do to logs and models, with progress: read, find or fit the model, detect."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sensorfault.cli import show
+
+if TYPE_CHECKING:
+    from sensorfault.detection import Detection
+    from sensorfault.logs import Log
+    from sensorfault.model import Model
+
+
+def read_log(path: Path, vehicle: Path | None) -> "Log":
+    """Read a log and say what reading found."""
+    from sensorfault.logs import read
+
+    log = read(path, vehicle)
+    show.say(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.")
+    for note in log.notes:
+        show.say(f"  {note}")
+    return log
+
+
+@dataclass(frozen=True)
+class Ready:
+    """A model, the part of the log that it may be judged on, and how it came about, for people."""
+
+    model: "Model"
+    judged: "Log"
+    fitted_on_s: tuple[float, float] | None
+    sentences: tuple[str, ...]
+
+
+def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: int) -> Ready:
+    """Load the model; without one, fit on the log's own beginning and judge the rest."""
+    if model_path is not None:
+        from sensorfault.store import load
+
+        model = load(model_path)
+        told = (
+            f"Limits: fitted by {model.method} on {model.summary.get('training_log', 'another log')}.",
+            *rate(model),
+        )
+        return Ready(model, log, None, (*told, *not_watched(model)))
+    from sensorfault.methods.fit import fit
+
+    start = float(log.time[0])
+    cut = start + learn * log.duration_s
+    with show.progress() as bar:
+        task = bar.add_task(f"fitting {method}", total=None)
+        model = fit(log.between(end_s=cut), method, held_out=0.0, seed=seed)
+        bar.update(task, total=1, completed=1)
+    told = (
+        f"No model was given: {method} was fitted on the log's own beginning, {show.clock(start)} to "
+        f"{show.clock(cut)}, taken as healthy; only the rest was judged.",
+        "A fault in that beginning is learned, not found, and the false-alarm rate is not known: "
+        "fit on a drive you trust with 'sensorfault fit' to know both.",
+    )
+    for sentence in (*told, *not_watched(model)):
+        show.say(sentence)
+    return Ready(model, log.between(cut), (start, cut), (*told, *not_watched(model)))
+
+
+def rate(model: "Model") -> tuple[str, ...]:
+    """What is known of the false-alarm rate."""
+    told = model.summary
+    if "alarms_per_hour" not in told:
+        return ("False-alarm rate: not measured.",)
+    return (
+        f"False alarms: {told['held_out_alarms']} in the {told['held_out_s']:.0f} s held out from the fit, "
+        f"{told['alarms_per_hour']:.3g} an hour.",
+    )
+
+
+def not_watched(model: "Model") -> tuple[str, ...]:
+    """Which channels are watched for silence only, and why."""
+    reasons: dict[str, str] = model.summary.get("not_watched", {})
+    if not reasons:
+        return ()
+    by_reason: dict[str, list[str]] = {}
+    for path, reason in reasons.items():
+        by_reason.setdefault(reason, []).append(path)
+    said = "; ".join(f"{', '.join(paths)} ({reason})" for reason, paths in by_reason.items())
+    return (f"Watched for silence only: {said}.",)
+
+
+def detect(model: "Model", log: "Log", what: str = "judging") -> "Detection":
+    """Detect with a progress bar."""
+    from sensorfault.detector import detect
+
+    with show.progress() as bar:
+        task = bar.add_task(what, total=1.0)
+        return detect(model, log, lambda share: bar.update(task, completed=share))
+
+
+def answer(log: "Log", found: "Detection", ready: Ready) -> dict[str, Any]:
+    """The JSON of a detection."""
+    return {
+        "log": log.name,
+        "method": found.method,
+        "judged_s": [float(found.log.time[0]), float(found.log.time[-1])],
+        "fitted_on_s": ready.fitted_on_s,
+        "watched": [c.path for c, w in zip(ready.model.channels, ready.model.watched, strict=True) if w],
+        "not_watched": ready.model.summary.get("not_watched", {}),
+        "notes": list(log.notes),
+        "events": [event.as_dict() for event in found.events],
+    }

@@ -1,0 +1,155 @@
+"""A model and a log: verdicts and fault events, from a file or live."""
+
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.detection import Detection, Trace
+from sensorfault.events import QUIET_S, Event, Row, Tracker, Watch
+from sensorfault.logs.table import Log
+from sensorfault.model import Model
+from sensorfault.replay import Progress, Replayed, replay_log
+from sensorfault.run import Now, Stepper
+from sensorfault.types import FAULT
+
+
+def detect(model: Model, log: Log, progress: Progress | None = None) -> Detection:
+    """Replay a log through a fitted monitor, from a fresh start.
+
+    Raises:
+        LogError: the log lacks a channel of the model, or ticks at another rate.
+    """
+    log = model.take(log)
+    told = replay_log(model.monitor, log, progress)
+    lost = ~np.asarray(told.believed) & (np.isnan(log.value) | (np.asarray(told.channel) == FAULT))
+    repaired = np.where(lost, np.nan, np.asarray(told.value))
+    return Detection(
+        log=log,
+        method=model.method,
+        channel=np.asarray(told.channel),
+        sensor=np.asarray(told.sensor),
+        sample=np.asarray(told.sample),
+        repaired=repaired,
+        traces=_traces(model, told),
+        events=tuple(_events(model, log, told)),
+    )
+
+
+class Live:
+    """A fitted model on a vehicle: one sample in, one verdict out, events as they end.
+
+    >>> live = Live(model)
+    >>> now = live.push(0.02, [0.01, 0.0, 0.12, 0.3, -0.1, 9.8])
+    >>> now.sample  # 0 ok, 1 unknown, 2 fault
+
+    `events` are those that have ended; `open()` those that go on.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.events: list[Event] = []
+        self._step = Stepper(model.monitor)
+        self._tracker = Tracker(_watch(model))
+        self._silent_after = model.silent_after_s
+        held = {sensor.name: sensor.held for sensor in model.sensors}
+        names = [channel.sensor for channel in model.channels]
+        self._held = [np.flatnonzero([n == name for n in names]) for name in held if held[name]]
+        self._fresh: Bool[np.ndarray, " C"] = np.ones(len(names), bool)
+        self._last: Float[np.ndarray, " C"] = np.full(len(names), np.nan)
+        self._begun = False
+        self._time: float | None = None
+
+    def push(self, time: float, value: Any, fresh: Any = None) -> Now:
+        """Judge one sample: `time` [s], rising; `value` (C,) in SI and in the model's order, NaN for what is absent.
+
+        `fresh` (C,) marks new measurements; left out, a held sensor is new when one of its channels has changed.
+        """
+        if fresh is None:
+            fresh = self._fresh if not self._held else self._changed(np.asarray(value, float))
+        time = float(time)
+        now = self._step.push(time, value, fresh)
+        gap_s, self._time = (time - self._time if self._time is not None else 0.0), time
+        # A row without a fault or a silence, while no event is open, changes nothing in the tracker.
+        silent = (now.silence > self._silent_after).any()
+        if now.sample == FAULT or silent or not self._begun or self._tracker.busy():
+            self._begun = True
+            self.events += self._tracker.push(
+                Row(
+                    time,
+                    gap_s,
+                    now.channel,
+                    now.sample,
+                    now.score,
+                    now.limit,
+                    np.asarray(value, float),
+                    now.residual,
+                    now.valid,
+                    now.silence,
+                )
+            )
+        return now
+
+    def open(self) -> list[Event]:
+        """Events that go on; their end_s is None."""
+        return self._tracker.open()
+
+    def _changed(self, value: Float[np.ndarray, " C"]) -> Bool[np.ndarray, " C"]:
+        fresh = self._fresh.copy()
+        for channels in self._held:
+            fresh[channels] = (value[channels] != self._last[channels]).any()
+        self._last = np.where(np.isfinite(value), value, self._last)
+        return fresh
+
+
+def _watch(model: Model) -> Watch:
+    return Watch(
+        model.method,
+        tuple(channel.sensor for channel in model.channels),
+        tuple(channel.name for channel in model.channels),
+        model.period_s,
+        model.silent_after_s,
+        np.asarray(model.sigma),
+    )
+
+
+def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
+    tracker = Tracker(_watch(model))
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
+    channel, sample = np.asarray(told.channel), np.asarray(told.sample)
+    residual, valid, silence = (np.asarray(x) for x in (told.residual, told.valid, told.silence))
+    gap_s = np.diff(log.time, prepend=log.time[:1])
+    ended: list[Event] = []
+    for i in _interesting(log.time, (sample == FAULT) | (silence > model.silent_after_s).any(axis=1)):
+        ended += tracker.push(
+            Row(
+                float(log.time[i]),
+                float(gap_s[i]),
+                channel[i],
+                int(sample[i]),
+                score[i],
+                limit[i],
+                log.value[i],
+                residual[i],
+                valid[i],
+                silence[i],
+            )
+        )
+    return sorted(ended + tracker.open(), key=lambda event: event.start_s)
+
+
+def _interesting(time: Float[np.ndarray, " T"], marked: Bool[np.ndarray, " T"]) -> Any:
+    """Rows a tracker must see: the first, the marked ones, those for QUIET_S after, and the one that ends them."""
+    last = np.maximum.accumulate(np.where(marked, time, -np.inf))
+    near = time - last <= QUIET_S
+    near[1:] |= near[:-1]
+    near[0] = True
+    return np.flatnonzero(near)
+
+
+def _traces(model: Model, told: Replayed) -> tuple[Trace, ...]:
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
+    return tuple(
+        Trace(name, channel, score[:, k], limit[:, k])
+        for k, (name, channel) in enumerate(model.tests)
+        if np.isfinite(score[:, k]).any()
+    )

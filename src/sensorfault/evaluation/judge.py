@@ -1,0 +1,121 @@
+"""Events against the truth: found, when, on whose account; and the alarms that nothing explains."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensorfault.detection import Detection
+from sensorfault.events import Event
+from sensorfault.faults.fault import Fault
+from sensorfault.logs.table import Log
+
+GRACE_S = 1.0  # an event that begins so soon after a fault's end is still that fault's
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one injected fault.
+
+    `delay_s`: from onset to the first alarm, NaN if there was none. `sensor_right`, `channel_right`, `kind_right` hold
+    for that first alarm. `error_before`, `error_after`: root mean square of measured and of repaired minus true values
+    over the fault, in healthy sigmas, NaN where there was nothing to compare.
+    """
+
+    fault: Fault
+    found: bool
+    delay_s: float
+    sensor_right: bool
+    channel_right: bool
+    kind_right: bool
+    named: Event | None
+    error_before: float
+    error_after: float
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Outcomes of all faults, the events that no fault explains, and the hours in which such could happen."""
+
+    outcomes: tuple[Outcome, ...]
+    false_alarms: tuple[Event, ...]
+    healthy_hours: float
+
+    @property
+    def false_alarms_per_hour(self) -> float:
+        """NaN where there was no healthy time."""
+        return len(self.false_alarms) / self.healthy_hours if self.healthy_hours > 0 else float("nan")
+
+
+def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None) -> Judgement:
+    """Compare what was found with what was injected; `clean`, the log before injection, gives the recovery error.
+
+    Causal and on events: an event belongs to a fault if it begins between the fault's onset and its end (plus GRACE_S);
+    one that was already going on does not count as finding it. No point adjustment.
+    """
+    events = detection.events
+    outcomes = tuple(_outcome(fault, detection, clean) for fault in truth)
+    explained = {id(event) for fault in truth for event in _of(fault, events, detection.log.period_s)}
+    false_alarms = tuple(event for event in events if id(event) not in explained)
+    faulty = covered_s([(f.start_s, f.end_s + GRACE_S) for f in truth])
+    hours = max(0.0, detection.log.duration_s - faulty) / 3600
+    return Judgement(outcomes, false_alarms, hours)
+
+
+def noticed_s(event: Event) -> float:
+    """When an event was first known of: a silence only once it had lasted longer than allowed."""
+    if event.kind == "miss" and event.limit is not None:
+        return event.start_s + event.limit
+    return event.start_s
+
+
+def _of(fault: Fault, events: Sequence[Event], tick_s: float) -> list[Event]:
+    first, last = fault.start_s - tick_s / 2, fault.end_s + GRACE_S
+    return sorted((event for event in events if first <= event.start_s <= last), key=noticed_s)
+
+
+def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
+    mine = _of(fault, detection.events, detection.log.period_s)
+    before, after = _errors(fault, detection, clean) if clean else (float("nan"), float("nan"))
+    if not mine:
+        return Outcome(fault, False, float("nan"), False, False, False, None, before, after)
+    # The first alarm counts; of several at once, the one that names a sensor.
+    first = min(mine, key=lambda event: (noticed_s(event), event.sensor is None))
+    return Outcome(
+        fault=fault,
+        found=True,
+        delay_s=max(0.0, noticed_s(first) - fault.start_s),
+        sensor_right=first.sensor == fault.sensor,
+        channel_right=first.sensor == fault.sensor and fault.channel in (None, first.channel),
+        kind_right=first.kind == fault.kind,
+        named=first,
+        error_before=before,
+        error_after=after,
+    )
+
+
+def _errors(fault: Fault, detection: Detection, clean: Log) -> tuple[float, float]:
+    """Measured and repaired minus clean over the fault, root mean square in units of the channel's healthy sigma."""
+    log = detection.log
+    struck = [i for i, c in enumerate(log.channels) if c.sensor == fault.sensor and fault.channel in (None, c.name)]
+    rows = (log.time >= fault.start_s) & (log.time <= fault.end_s)
+    clean = clean.select(log.channels[i].path for i in struck)
+    scale = np.nanstd(clean.value, axis=0)
+    before, after = (
+        _rms((value[rows][:, struck] - clean.value[rows]) / scale) for value in (log.value, detection.repaired)
+    )
+    return before, after
+
+
+def _rms(error: np.ndarray) -> float:
+    error = error[np.isfinite(error)]
+    return float(np.sqrt(np.mean(error**2))) if error.size else float("nan")
+
+
+def covered_s(spans: list[tuple[float, float]]) -> float:
+    """Length of the union of intervals [s]."""
+    total, reach = 0.0, -np.inf
+    for start, end in sorted(spans):
+        total += max(0.0, end - max(start, reach))
+        reach = max(reach, end)
+    return total

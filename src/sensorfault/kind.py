@@ -1,0 +1,70 @@
+"""What kind of fault a channel shows, from sums that grow with it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SURE = 3.0  # standard errors a mean or a slope must stand out by
+
+
+@dataclass
+class Shape:
+    """Running sums over the new measurements of one channel while its event lasts.
+
+    The offset and slope are of the residual (measured minus expected), by least squares over time.
+    """
+
+    n: int = 0
+    repeats: int = 0
+    start_s: float = 0.0
+    end_s: float = 0.0
+    last: float = float("nan")
+    t: float = 0.0
+    tt: float = 0.0
+    r: float = 0.0
+    rr: float = 0.0
+    tr: float = 0.0
+
+    def take(self, measurements: list[tuple[float, float, float]]) -> None:
+        """New measurements: time [s], measured [SI], residual [SI]."""
+        for time, measured, residual in measurements:
+            if not self.n:
+                self.start_s = time
+            t = time - self.start_s
+            self.end_s = time
+            self.n += 1
+            self.repeats += measured == self.last
+            self.last = measured
+            self.t += t
+            self.tt += t * t
+            self.r += residual
+            self.rr += residual * residual
+            self.tr += t * residual
+
+    def kind(self, period_s: float, sigma: float) -> str:
+        """short, jam, drift, bias, noise, or unknown where the residual does not tell.
+
+        `sigma`: standard deviation of the healthy residual [SI].
+        """
+        if self.n == 0:
+            return "unknown"
+        if self.end_s - self.start_s <= 1.5 * period_s:
+            return "short"
+        if self.repeats >= 0.5 * (self.n - 1):
+            return "jam"
+        mean, square = self.r / self.n, self.rr / self.n
+        spread = max(square - mean**2, 0.0) ** 0.5
+        times = max(self.tt / self.n - (self.t / self.n) ** 2, 0.0) ** 0.5
+        # least squares r = a + b t: b = cov(t, r) / var(t)
+        slope = (self.tr / self.n - self.t / self.n * mean) / times**2 if times > 0 else 0.0
+        left = max(spread**2 - (slope * times) ** 2, 0.0) ** 0.5
+        error = max(left, sigma) / np.sqrt(self.n)
+        # The ramp rises by more than it started with: drift. Else a mean that stands clear of the spread: bias.
+        rise = slope * np.sqrt(12) * times
+        if abs(slope) * times > SURE * error and abs(rise) > abs(mean):
+            return "drift"
+        if abs(mean) > max(SURE * error, spread):
+            return "bias"
+        if spread > 2 * sigma:
+            return "noise"
+        return "unknown"

@@ -1,0 +1,44 @@
+"""Healthy data in, fitted model out, with what the model does on healthy data it has not seen."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from sensorfault.detector import detect
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.catalog import DEFAULT, recipe
+from sensorfault.model import Model
+
+HELD_OUT = 0.3
+
+
+def fit(
+    log: Log,
+    method: str = DEFAULT,
+    held_out: float = HELD_OUT,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> Model:
+    """Fit a method of the catalog on a healthy log.
+
+    The last `held_out` share of the log (0 to 0.9) is kept from the fit and judged afterwards: `model.summary` then has
+    `held_out_s`, `held_out_alarms` and `alarms_per_hour`. With 0 all is used and nothing is known of the rate.
+
+    Raises:
+        LogError: an unknown method, or a log that it cannot be fitted on.
+    """
+    if not 0 <= held_out <= 0.9:
+        raise LogError(f"held_out is {held_out:g}; give the share of the log to keep for judging, 0 to 0.9.")
+    if len(log) < 2:
+        raise LogError(f"{log.name} has {len(log)} rows; give a log of at least a few seconds.")
+    tell = progress or (lambda _: None)
+    cut = float(log.time[0]) + (1 - held_out) * log.duration_s
+    tell(f"fitting {method}")
+    model = recipe(method).build(log.between(end_s=cut) if held_out else log, seed)
+    summary = model.summary | {"seed": seed}
+    if held_out:
+        tell("judging the part held out")
+        unseen = log.between(cut)
+        alarms = len(detect(model, unseen).events)
+        hours = unseen.duration_s / 3600
+        summary |= {"held_out_s": unseen.duration_s, "held_out_alarms": alarms, "alarms_per_hour": alarms / hours}
+    return replace(model, summary=summary)

@@ -1,0 +1,26 @@
+"""Every part a stored monitor may be made of, by name. What is not listed here is not loaded."""
+
+import equinox as eqx
+
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.decision.persist import Persist
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.drop import Drop
+from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.statistic.repeats import Repeats
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.monitor.threshold.scaled_max import ScaledMax
+
+PARTS: dict[str, type[eqx.Module]] = {
+    part.__name__: part
+    for part in (
+        *(Monitor, Branch),
+        Reconstruction,
+        *(Norm, Repeats),
+        *(Fixed, ScaledMax),
+        *(Exceed, Persist),
+        *(Drop, Rebuild),
+    )
+}
