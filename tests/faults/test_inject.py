@@ -36,6 +36,9 @@ def test_drift_grows_from_onset_and_is_gone_at_the_end() -> None:
     assert moved[50] == 0
     assert moved[79] == pytest.approx(0.5 * DEGREE * 2.9)
     assert not moved[80:].any()
+    # The ramp began at 5.0 s, though the first fix on it is that of 5.3 s.
+    fix = column(Fault("drift", "gnss", "speed", 5.0, 3.0, 3.6), SPEED)[53] - LOG.value[53, SPEED]
+    assert fix == pytest.approx(0.3)
 
 
 def test_jam_repeats_the_last_healthy_measurement_as_new_ones() -> None:
