@@ -84,7 +84,7 @@ function paint(id, figure) {
   const layout = structuredClone(figure.layout);
   layout.xaxis.range = [...shown];
   if (figure.fit) fit(layout, data, shown);
-  return Plotly.react(id, data, layout, { displayModeBar: false, responsive: true, doubleClick: false });
+  return Plotly.react(id, data, layout, { displayModeBar: false, responsive: true, doubleClick: false, showTips: false });
 }
 
 function say() {

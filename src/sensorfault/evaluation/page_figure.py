@@ -70,7 +70,7 @@ def time_axis(span: Span) -> Json:
         "title": {"text": "time [s]", "standoff": 4, "font": {"size": 11}},
         "gridcolor": "--grid",
         "zeroline": False,
-        "hoverformat": ".3f",
+        "unifiedhovertitle": {"text": "%{x:.3f} s"},
         "showspikes": True,
         "spikemode": "across",
         "spikethickness": 1,

@@ -110,7 +110,7 @@ def verdicts(detection: Detection, truth: Sequence[Fault] = ()) -> Json:
         "barmode": "overlay",
         "hovermode": "closest",
         "annotations": names,
-        "xaxis": time_axis(whole(detection.log)),
+        "xaxis": {**time_axis(whole(detection.log)), "showspikes": False},
         "yaxis": {
             "range": [len(names) - 0.5, -0.5],
             "showticklabels": False,
