@@ -48,7 +48,7 @@ def guess(path: Where) -> VehicleFile:
     names = ["log"] if len(guesses) == 1 else _short_names([one.path for one in guesses])
     taken = [sensor.name for one in guesses for sensor in one.sensors]
     sensors = [
-        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else f"{name}_{sensor.name}")
+        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else _joined(name, sensor.name))
         for one, name in zip(guesses, names, strict=True)
         for sensor in one.sensors
     ]
@@ -97,6 +97,10 @@ def _untied(guesses: list[_Guess]) -> list[str]:
         for one in guesses
         if tied and one not in tied
     ]
+
+
+def _joined(file: str, sensor: str) -> str:
+    return file if file.endswith(sensor) else f"{file}_{sensor}"
 
 
 def _short_names(paths: list[Path]) -> list[str]:

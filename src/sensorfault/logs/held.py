@@ -10,17 +10,20 @@ _SHORTEST = 0.6  # one in five may last for less than this share of the usual
 
 def repeats(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:
     """Rows in which every channel is what it was in the row before that had any value."""
-    present = np.flatnonzero(np.isfinite(value).any(axis=1))
-    same = np.zeros(len(value), bool)
-    if len(present) > 1:
-        now, before = value[present[1:]], value[present[:-1]]
-        same[present[1:]] = ((now == before) | (np.isnan(now) & np.isnan(before))).all(axis=1)
-    return same
+    present = np.flatnonzero(_any_finite(value))
+    rows = value if len(present) == len(value) else value[present]
+    same = np.ones(max(len(rows) - 1, 0), bool)
+    for channel in rows.T:
+        now, before = channel[1:], channel[:-1]
+        same &= (now == before) | (np.isnan(now) & np.isnan(before))
+    repeated = np.zeros(len(value), bool)
+    repeated[present[1:]] = same
+    return repeated
 
 
 def share_repeated(value: Float[np.ndarray, "T C"]) -> float:
     """Share of the rows with a value that only repeat the row before."""
-    present = int(np.isfinite(value).any(axis=1).sum())
+    present = int(_any_finite(value).sum())
     return float(repeats(value).sum()) / present if present else 0.0
 
 
@@ -30,7 +33,7 @@ def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
     Measurements are counted, not rows: one long standstill (a parked car, an airspeed of zero) holds nothing. And a
     coarse reading that happens not to change lasts for one row as often as for many: that is no hold either.
     """
-    start = np.flatnonzero(~repeats(value) & np.isfinite(value).any(axis=1))
+    start = np.flatnonzero(~repeats(value) & _any_finite(value))
     if len(start) < 3:
         return False
     lasts = np.diff(start)
@@ -70,5 +73,17 @@ def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"]
 
     A long standstill, where a held value cannot change, is one gap among many and does not move the median.
     """
-    at: Float[np.ndarray, " N"] = time[fresh.any(axis=1)]
+    at: Float[np.ndarray, " N"] = time[_any(fresh)]
     return float(np.median(np.diff(at))) if len(at) > 1 else float("nan")
+
+
+def _any_finite(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:
+    return _any(np.isfinite(value))
+
+
+def _any(mark: Bool[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:
+    """`mark.any(axis=1)`, by columns: ten times as fast for few columns and many rows."""
+    found = np.zeros(len(mark), bool)
+    for channel in mark.T:
+        found |= channel
+    return found

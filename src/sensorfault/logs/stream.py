@@ -14,6 +14,8 @@ from sensorfault.logs.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
 
+_LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
+
 
 @dataclass(frozen=True)
 class Stream:
@@ -58,29 +60,22 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
             f"{abs(rate - 1) * 1e6:.1f} ppm {'slow' if rate > 1 else 'fast'}, which was corrected."
         )
     time = clock.time * rate
-    columns, marks, gaps = [], [], _Gaps(source)
-    described = []
-    for sensor in sensors:
-        value = np.column_stack(
-            [_channel(source, channel, clock, gaps, sensor.period_s is not None) for channel in sensor.channels]
-        )
-        fresh = _fresh(source, sensor, value, clock)
-        period = sensor.period_s or usual_period_s(time, fresh)
-        described.append(Sensor(sensor.name, period, sensor.held, sensor.watch))
-        notes += _held_note(source.path.name, sensor, value, period)
-        columns.append(value)
-        marks.append(fresh)
+    gaps = _Gaps(source)
     channels = tuple(Channel(c.name, s.name, c.unit) for s in sensors for c in s.channels)
-    return Stream(
-        source.path.name,
-        zero,
-        time,
-        np.concatenate(columns, axis=1),
-        np.concatenate(marks, axis=1),
-        channels,
-        tuple(described),
-        (*notes, *gaps.notes()),
-    )
+    value = np.empty((len(time), len(channels)))
+    fresh = np.empty(value.shape, bool)
+    described, at = [], 0
+    for sensor in sensors:
+        own = slice(at, at + len(sensor.channels))
+        for i, channel in enumerate(sensor.channels, at):
+            value[:, i] = _channel(source, channel, clock, gaps, sensor.period_s is not None)
+        fresh[:, own] = _fresh(source, sensor, value[:, own], clock)
+        period = sensor.period_s or usual_period_s(time, fresh[:, own])
+        described.append(Sensor(sensor.name, period, sensor.held, sensor.watch))
+        notes += _held_note(source.path.name, sensor, value[:, own], period)
+        at = own.stop
+    notes += gaps.notes()
+    return Stream(source.path.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
 
 
 class _Gaps:
@@ -142,15 +137,16 @@ def _epoch(source: Source, name: str | None, clock: Clock) -> np.ndarray | None:
 
 
 def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, period: float) -> list[str]:
-    share = share_repeated(value)
     if sensor.held and not np.isfinite(period):
         return [f"{name}: sensor '{sensor.name}' is held, and fewer than two measurements came."]
     if sensor.held:
+        share = share_repeated(value)
         return [
             f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat, a measurement comes every "
             f"{period:.3g} s."
         ]
-    if looks_held(value):
+    if looks_held(value[:_LOOK_ROWS]):
+        share = share_repeated(value)
         return [
             f"{name}: {share:.0%} of the rows of sensor '{sensor.name}' repeat the row before, yet count as new; "
             f"if the file holds the last one, write held = true in [sensor.{sensor.name}]."

@@ -81,7 +81,7 @@ def read_name(column: str) -> Meaning:
         return Meaning("time", bare, "", unit)
     for kind, pattern in _KINDS:
         match = pattern.search(bare)
-        if match and not _QUALITY.search(bare):
+        if match and (kind == "quaternion" or not _QUALITY.search(bare)):
             groups = match.groupdict()
             axis = groups.get("axis") or groups.get("alone") or kind
             return Meaning(kind, _channel(kind, axis), _stem(bare, match), unit)
@@ -95,7 +95,8 @@ def _channel(kind: str, axis: str) -> str:
 
 
 def _stem(name: str, match: re.Match[str]) -> str:
-    return (name[: match.start()] + name[match.end() :]).strip("_")
+    rest = (name[: match.start()].strip("_"), name[match.end() :].strip("_"))
+    return "_".join(part for part in rest if part)
 
 
 def _by_unit(name: str, unit: str) -> tuple[str, str, str]:
