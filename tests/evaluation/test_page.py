@@ -288,6 +288,13 @@ def test_found_needs_the_same_sensor_and_overlap():
     assert not found(fault, [])
 
 
+def test_found_under_another_name_says_so(tmp_path):
+    truth = (Fault("drift", "gyro", None, 30.0, 10.0), Fault("short", "gyro", "z", 10.0, 0.02))
+    near_miss = Event(9.0, 11.0, "sensor", "gyro", "x", "short", 9.5, 3.0, "elm")
+    detection = replace(drive(), events=(near_miss, *drive().events))
+    assert [row[-1] for row in written(tmp_path, detection, truth).rows[3:]] == ["found", "found as bias of x"]
+
+
 @pytest.mark.parametrize(
     ("seconds", "text"),
     [(0.0, "0:00.00"), (59.999, "1:00.00"), (102.3, "1:42.30"), (3725.5, "1:02:05.50"), (-1.0, "−0:01.00")],

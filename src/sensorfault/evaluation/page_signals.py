@@ -45,10 +45,10 @@ def digits(value: Float[np.ndarray, " K"]) -> int:
     return int(np.clip(np.ceil(np.log10(np.abs(finite).max() / span)) + 4, 4, 12))
 
 
-def _trace(x: Float[np.ndarray, " K"], y: Float[np.ndarray, " K"], name: str, unit: str, pen: Json) -> Json:
+def _trace(x: Float[np.ndarray, " K"], y: Float[np.ndarray, " K"], name: str, unit: str, mode: str, pen: Json) -> Json:
     return {
         "type": "scatter",
-        "mode": "lines" if x.size > 200 else "lines+markers",
+        "mode": mode,
         "x": packed(x),
         "y": packed(y),
         "name": name,
@@ -64,13 +64,14 @@ def _row(detection: Detection, column: int, keep: Bool[np.ndarray, " T"], points
     name, unit = escape(channel.name), escape(channel.unit)
     value, old = from_si(log.value[:, column], channel.unit), stale(log, column)
     stand_in = from_si(replaced(detection, column), channel.unit)
+    mode = "lines" if np.isfinite(value).sum() > 200 else "lines+markers"
     parts = (
         (np.where(old, np.nan, value), name, {"color": "--signal", "width": 1.2}),
         (np.where(old, value, np.nan), f"{name}, held", {"color": "--signal", "width": 0.6}),
         (stand_in, f"{name}, stand-in", {"color": "--standin", "width": 1.6, "dash": "4px,3px"}),
     )
     traces = [
-        _trace(*line(log.time, part, keep, points), label, unit, pen)
+        _trace(*line(log.time, part, keep, points), label, unit, mode, pen)
         for part, label, pen in parts
         if np.isfinite(part).any()
     ]

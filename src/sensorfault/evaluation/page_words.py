@@ -74,12 +74,31 @@ def sentences(heading: str, lines: Sequence[str]) -> str:
     return f"<h3>{escape(heading)}</h3><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>"
 
 
-def found(fault: Fault, events: Iterable[Event]) -> bool:
-    """Whether some event names the fault's sensor while the fault lasts. For display only; no measure of merit."""
-    return any(
-        e.sensor == fault.sensor and e.start_s <= fault.end_s and (e.end_s is None or e.end_s >= fault.start_s)
+def match(fault: Fault, events: Iterable[Event]) -> Event | None:
+    """The event that names the fault's sensor while the fault lasts; of several, the most alike.
+
+    For display only; no measure of merit.
+    """
+    same = [
+        e
         for e in events
-    )
+        if e.sensor == fault.sensor and e.start_s <= fault.end_s and (e.end_s is None or e.end_s >= fault.start_s)
+    ]
+    return max(same, key=lambda e: (e.channel == fault.channel) + (e.kind == fault.kind), default=None)
+
+
+def found(fault: Fault, events: Iterable[Event]) -> bool:
+    """Whether there is such an event."""
+    return match(fault, events) is not None
+
+
+def _outcome(fault: Fault, event: Event | None) -> str:
+    """What became of an injected fault; the event's own words where they differ from the truth."""
+    if event is None:
+        return "missed"
+    if (event.channel, event.kind) == (fault.channel, fault.kind):
+        return "found"
+    return f"found as {event.kind} of {event.channel or 'all'}"
 
 
 def _row(start_s: float, end_s: float | None, log_end_s: float, cells: Sequence[str], tone: str = "") -> str:
@@ -120,11 +139,11 @@ def truth_table(detection: Detection, truth: Sequence[Fault]) -> str:
     end = float(detection.log.time[-1])
     rows, hits = [], 0
     for fault in sorted(truth, key=lambda f: f.start_s):
-        hit = found(fault, detection.events)
-        hits += hit
+        event = match(fault, detection.events)
+        hits += event is not None
         size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in ("jam", "miss") else "–"
-        cells = (fault.sensor, fault.channel or "all", fault.kind, size, "found" if hit else "missed")
-        rows.append(_row(fault.start_s, fault.end_s, end, cells, "hit" if hit else "missed"))
+        cells = (fault.sensor, fault.channel or "all", fault.kind, size, _outcome(fault, event))
+        rows.append(_row(fault.start_s, fault.end_s, end, cells, "missed" if event is None else "hit"))
     text = f"{hits} of {len(truth)} found, counting any event on the same sensor that overlaps."
     heads = ("start", "end", "sensor", "channel", "kind", "magnitude", "")
     return f"<h2>Injected faults</h2><p>{text}</p>{_table(heads, rows)}"
