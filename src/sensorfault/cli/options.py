@@ -1,7 +1,7 @@
 """Arguments and options that several verbs share."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -28,7 +28,7 @@ learn_option = click.option(
 seed_option = click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
 
 
-def out_option(default: str | None, help: str) -> Any:
+def out_option(default: str | None, help: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """--out, with or without a default."""
     return click.option(
         "--out", type=click.Path(path_type=Path), default=default, show_default=bool(default), help=help

@@ -82,7 +82,7 @@ def campaign(
         injected = inject(log, plan(log, batch, pause_s=PAUSE_S, seed=seed + i), seed)
         found = detect(model, injected.log)
         outcomes += judge(found, injected.truth, log).outcomes
-        ranked.append((found.traces[0].score, injected.mask.any(axis=1)))
+        ranked.append((found.traces[0].score, np.asarray(injected.mask.any(axis=1))))
         if progress:
             progress((i + 1) / len(batches))
     score, faulty = (np.concatenate(parts) for parts in zip(*ranked, strict=True))

@@ -47,7 +47,7 @@ def _cell(kind: str, where: str, magnitude: float, group: list[Outcome], clean: 
     found = [outcome for outcome in group if outcome.found]
     delays = [outcome.delay_s for outcome in found]
     ratios = [o.error_after / o.error_before for o in group if o.error_before > 0 and np.isfinite(o.error_after)]
-    window = np.mean([outcome.fault.duration_s for outcome in group]) + GRACE_S
+    window = float(np.mean([outcome.fault.duration_s for outcome in group])) + GRACE_S
     alarming = covered_s([(event.start_s - window, event.start_s) for event in clean.events])
     return Cell(
         kind=kind,

@@ -99,7 +99,7 @@ def _errors(fault: Fault, detection: Detection, clean: Log) -> tuple[float, floa
     log = detection.log
     struck = [i for i, c in enumerate(log.channels) if c.sensor == fault.sensor and fault.channel in (None, c.name)]
     rows = (log.time >= fault.start_s) & (log.time <= fault.end_s)
-    clean = clean.select(log.channels[i].path for i in struck)
+    clean = clean.select(log.channels[i].path for i in struck).between(log.time[0], log.time[-1] + log.period_s / 2)
     scale = np.nanstd(clean.value, axis=0)
     before, after = (
         _rms((value[rows][:, struck] - clean.value[rows]) / scale) for value in (log.value, detection.repaired)

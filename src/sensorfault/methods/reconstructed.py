@@ -23,6 +23,7 @@ from sensorfault.training.scaling import Scaling
 from sensorfault.training.tapes import score_tape
 
 REBUILD_S = 10.0  # a stand-in is believed for so long
+READMIT_S = 0.25  # a channel is taken at its own word again so long after the last accusation
 LEAST_ROWS = 50
 
 
@@ -43,17 +44,19 @@ def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], 
     scaling = Scaling.of(value, watched)
     channels = len(watched)
     hold = jnp.asarray(hold_s(log))
+    residual = fit(value, scaling)
     deaf = Monitor(
-        residual=fit(value, scaling),
+        residual=residual,
         branches=(
             Branch(Norm(jnp.asarray(scaling.half)), ScaledMax(jnp.full(1, jnp.inf))),
             Branch(Repeats(channels), Fixed(jnp.full(channels, jnp.inf))),
         ),
         decision=Exceed(hold),
-        recovery=Rebuild(jnp.asarray(REBUILD_S), channels),
+        recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(READMIT_S), channels),
         hold_s=hold,
         owner=owners(log.channels, log.sensors),
         most=1,
+        together=False,
     )
     norm, runs = score_tape(deaf, log)
     monitor = eqx.tree_at(
@@ -64,5 +67,5 @@ def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], 
     )
     tests = (("norm", None), *(("repeats", channel.path) for channel in log.channels))
     told = {"training_log": log.name, "training_s": log.duration_s, "rows": int(rows.sum()), "not_watched": reasons}
-    sigma = tuple(np.sqrt(np.diag(np.asarray(deaf.residual.cov))).tolist())
+    sigma = tuple(np.sqrt(np.diag(np.asarray(residual.cov))).tolist())
     return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)

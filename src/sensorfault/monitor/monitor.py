@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from sensorfault.stage import Stage, keep_finite
 from sensorfault.types import (
@@ -56,15 +56,17 @@ class _Judgement(NamedTuple):
     decided: Any
 
 
-_Round = tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " S"]]
+_Round = tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " C"], Int[Array, ""]]
 
 
 class Monitor(eqx.Module):
     """A residual generator, judged in several branches, decided, recovered from: fitted and ready to run.
 
     `owner[c]` is the sensor of channel c. `most` bounds how many sensors one sample may exclude, largest first; what is
-    still accused then is *unknown*. With most = 0 all accused are named at once. `hold_s[c]`: for how long a value may
-    stand in for a missing one before the channel counts as absent [s]; 0 for a channel that comes with every sample.
+    still accused then is *unknown*. With most = 0 all accused are named at once. `together`: a fault on one channel
+    takes out its whole sensor (a fix), not only the channels accused (an axis of a gyro). `hold_s[c]`: for how long a
+    value may stand in for a missing one before the channel counts as absent [s]; 0 for a channel that comes with every
+    sample.
     """
 
     residual: Stage[Any, Sample, Residual, Any]
@@ -74,6 +76,7 @@ class Monitor(eqx.Module):
     hold_s: Float[Array, " C"]
     owner: tuple[int, ...] = eqx.field(static=True)
     most: int = eqx.field(static=True, default=0)
+    together: bool = eqx.field(static=True, default=True)
 
     def init(self) -> MonitorState:
         """State before the first sample."""
@@ -138,44 +141,45 @@ class Monitor(eqx.Module):
 
     def _exclude(
         self, state: MonitorState, residual: Residual, first: _Judgement
-    ) -> tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " S"]]:
-        """Take out the worst sensor and judge the rest again, up to `most` times. A healthy sample pays nothing."""
-        owner = jnp.asarray(self.owner)
-        sensors = max(self.owner) + 1
-        nobody = jnp.zeros(len(self.owner), bool), jnp.zeros(sensors, bool)
-        if not self.most:
-            return first.told, first.decided, *nobody
+    ) -> tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " C"]]:
+        """Take out the worst sensor and judge the rest again, up to `most` times. A healthy sample pays nothing.
 
-        def accused(told: Accusation, out: Bool[Array, " S"]) -> Bool[Array, " C"]:
-            return told.named & (told.size > -jnp.inf) & ~out[owner]
+        Returns what the last judgement said, the channels struck (accused and out), and all channels out.
+        """
+        owner = jnp.asarray(self.owner)
+        nobody = jnp.zeros(len(self.owner), bool)
+        if not self.most:
+            return first.told, first.decided, nobody, nobody
+
+        def accused(told: Accusation, out: Bool[Array, " C"]) -> Bool[Array, " C"]:
+            return told.named & (told.size > -jnp.inf) & ~out
 
         def more(carry: _Round) -> Bool[Array, ""]:
-            told, _, _, out = carry
-            return accused(told, out).any() & (out.sum() < self.most)
+            told, _, _, out, rounds = carry
+            return accused(told, out).any() & (rounds < self.most)
 
         def strike(carry: _Round) -> _Round:
-            told, _, struck, out = carry
+            told, _, struck, out, rounds = carry
             now = accused(told, out)
             worst = owner == owner[jnp.argmax(jnp.where(now, told.size, -jnp.inf))]
             struck = struck | (now & worst)
-            out = out | jax.ops.segment_max(worst.astype(jnp.int8), owner, sensors).astype(bool)
-            again = self._judge(state, residual._replace(valid=residual.valid & ~out[owner]), struck)
-            return again.told, again.decided, struck, out
+            out = out | (worst if self.together else now & worst)
+            again = self._judge(state, residual._replace(valid=residual.valid & ~out), struck)
+            return again.told, again.decided, struck, out, rounds + 1
 
-        told, decided, struck, out = lax.while_loop(more, strike, (first.told, first.decided, *nobody))
+        start = first.told, first.decided, nobody, nobody, jnp.zeros((), jnp.int32)
+        told, decided, struck, out, _ = lax.while_loop(more, strike, start)
         return told, decided, struck, out
 
     def _verdict(
-        self, told: Accusation, struck: Bool[Array, " C"], out: Bool[Array, " S"]
+        self, told: Accusation, struck: Bool[Array, " C"], out: Bool[Array, " C"]
     ) -> tuple[Verdict, Bool[Array, " C"]]:
         """Three-valued verdicts, and which channels a filter must not take in."""
-        owner = jnp.asarray(self.owner)
-        removed = out[owner]
         # Accused by this sample's own scores, yet no exclusion left: unknown, not ok.
         left = told.named & (told.size > -jnp.inf) & ~struck & bool(self.most)
         bad = told.named & ~left
-        clear = told.tested & ~left & ~removed
+        clear = told.tested & ~left & ~out
         channel = jnp.where(bad, FAULT, jnp.where(clear, OK, UNKNOWN)).astype(jnp.int8)
-        sensor = jax.ops.segment_max(channel, owner, max(self.owner) + 1)
+        sensor = jax.ops.segment_max(channel, jnp.asarray(self.owner), max(self.owner) + 1)
         sample = jnp.where(bad.any() | told.hit, FAULT, jnp.where(told.tested.any(), OK, UNKNOWN)).astype(jnp.int8)
-        return Verdict(channel, sensor, sample), told.gated | removed | (left & told.gated)
+        return Verdict(channel, sensor, sample), told.gated | out | (left & told.gated)

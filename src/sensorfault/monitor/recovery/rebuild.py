@@ -6,29 +6,36 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.types import FAULT, NEVER, OK, Residual, Sample, Trust, Verdict
+from sensorfault.types import NEVER, OK, Residual, Sample, Trust, Verdict
 
 
 class _Since(NamedTuple):
     healthy: Float[Array, " C"]  # when the channel was last taken at its own word [s]
+    accused: Float[Array, " C"]  # when it was last kept out [s]
 
 
 class Rebuild(eqx.Module):
-    """Stand-in = expected value, up to `horizon_s` after the last trusted measurement."""
+    """Stand-in = expected value, up to `horizon_s` after the last trusted measurement.
+
+    A channel is taken at its own word again `readmit_s` after the last accusation: a score that dips below its limit
+    for a moment does not make a fault healthy.
+    """
 
     horizon_s: Float[Array, ""]
+    readmit_s: Float[Array, ""]
     channels: int = eqx.field(static=True)
 
     def init(self) -> _Since:
-        return _Since(jnp.full(self.channels, NEVER))
+        return _Since(jnp.full(self.channels, NEVER), jnp.full(self.channels, NEVER))
 
     def evaluate(
         self, state: _Since, seen: tuple[Sample, Residual, Verdict, Bool[Array, " C"]]
     ) -> tuple[Trust, _Since]:
         sample, residual, verdict, gated = seen
-        faulty = (verdict.channel == FAULT) & gated
-        measured = sample.fresh & ~gated
-        filled = faulty & sample.present & (sample.time - state.healthy <= self.horizon_s)
+        accused = jnp.where(gated, sample.time, state.accused)
+        doubted = sample.time - accused <= self.readmit_s
+        measured = sample.fresh & ~doubted
+        filled = doubted & sample.present & (sample.time - state.healthy <= self.horizon_s)
         trust = Trust(
             value=jnp.where(filled, residual.expected, sample.value),
             measured=measured,
@@ -36,7 +43,7 @@ class Rebuild(eqx.Module):
             learn=measured & (verdict.channel == OK) & (verdict.sample == OK),
             born=sample.born,
         )
-        return trust, _Since(jnp.where(measured, sample.time, state.healthy))
+        return trust, _Since(jnp.where(measured, sample.time, state.healthy), accused)
 
     def update(self, pending: _Since, trust: Trust) -> _Since:
         return pending
