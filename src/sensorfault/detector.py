@@ -6,11 +6,12 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.detection import Detection, Trace
-from sensorfault.events import QUIET_S, Event, Row, Tracker, Watch
+from sensorfault.events import Event
 from sensorfault.logs.table import Log
 from sensorfault.model import Model
 from sensorfault.replay import Progress, Replayed, replay_log
 from sensorfault.run import Now, Stepper
+from sensorfault.tracker import QUIET_S, Row, Tracker, Watch
 from sensorfault.types import FAULT
 
 

@@ -1,0 +1,165 @@
+"""Fault events from verdicts, sample by sample, for a log and live alike."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Bool, Float, Int8
+
+from sensorfault.events import Event
+from sensorfault.kind import Shape
+from sensorfault.types import FAULT
+
+QUIET_S = 2.0  # alarms of one channel closer than this are one event
+GAP_S = 1.0  # a shorter hole in the log is the recorder's jitter, not a fault
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What the tracker must know of a model, channel by channel."""
+
+    method: str
+    sensor: tuple[str, ...]
+    channel: tuple[str, ...]
+    period_s: Float[np.ndarray, " C"]
+    silent_after_s: Float[np.ndarray, " C"]
+    sigma: Float[np.ndarray, " C"]  # of the healthy residual [SI]
+
+
+@dataclass
+class Row:
+    """One sample as the tracker takes it."""
+
+    time: float
+    gap_s: float  # since the sample before
+    verdict: Int8[np.ndarray, " C"]
+    sample: int
+    score: Float[np.ndarray, " K"]  # NaN where there was nothing to test
+    limit: Float[np.ndarray, " K"]
+    measured: Float[np.ndarray, " C"]
+    residual: Float[np.ndarray, " C"]
+    valid: Bool[np.ndarray, " C"]
+    silence: Float[np.ndarray, " C"]
+
+
+@dataclass
+class _Open:
+    start_s: float
+    last_s: float
+    shape: Shape = field(default_factory=Shape)
+    since: list[tuple[float, float, float]] = field(default_factory=list)  # measurements after the last accusation
+    score: float = float("nan")
+    limit: float = float("nan")
+
+
+class Tracker:
+    """Turns one row after the other into events. Works on the rows that matter only, so a healthy one costs little."""
+
+    def __init__(self, watch: Watch) -> None:
+        self._watch = watch
+        self._open: dict[int | None, _Open] = {}
+        self._silent: dict[tuple[str, str | None], _Open] = {}
+        self._first: float | None = None
+        sensors = dict.fromkeys(watch.sensor)
+        self._of = {s: [c for c, owner in enumerate(watch.sensor) if owner == s] for s in sensors}
+
+    def push(self, row: Row) -> list[Event]:
+        """The events that this sample brought to an end."""
+        if self._first is None:
+            self._first = row.time
+        return self._faults(row) + self._silences(row)
+
+    def open(self) -> list[Event]:
+        """What is still going on: `end_s` is None."""
+        faults = self._together([(c, self._fault(c, one, None)) for c, one in self._open.items()])
+        silent = [self._miss(name, one, None) for name, one in self._silent.items()]
+        return sorted(faults + silent, key=lambda event: event.start_s)
+
+    def busy(self) -> bool:
+        """Whether an event is open, so that the next row matters whatever its verdict."""
+        return bool(self._open or self._silent)
+
+    def _faults(self, row: Row) -> list[Event]:
+        over = {c: one for c, one in self._open.items() if row.time - one.last_s > QUIET_S}
+        for c in over:
+            del self._open[c]
+        accused: list[int | None] = list(np.flatnonzero(row.verdict == FAULT).tolist())
+        if row.sample == FAULT and not accused:
+            accused = [None]
+        for c in accused:
+            one = self._open.setdefault(c, _Open(row.time, row.time))
+            one.last_s = row.time
+            self._peak(one, row)
+        for c, one in self._open.items():
+            if c is None or not row.valid[c]:
+                continue
+            one.since.append((row.time, float(row.measured[c]), float(row.residual[c])))
+            if c in accused:
+                one.shape.take(one.since)
+                one.since.clear()
+        return self._together([(c, self._fault(c, one, one.last_s)) for c, one in over.items()])
+
+    def _together(self, found: list[tuple[int | None, Event]]) -> list[Event]:
+        """One event for a sensor whose channels all showed the same kind and ended together."""
+        told = [event for _, event in found]
+        for sensor, channels in self._of.items():
+            mine = [event for c, event in found if c in channels]
+            if len(mine) < 2 or len(mine) < len(channels) or len({event.kind for event in mine}) > 1:
+                continue
+            worst = max(mine, key=lambda event: (event.peak_score or 0.0) / (event.limit or 1.0))
+            start_s = min(event.start_s for event in mine)
+            told = [event for event in told if event.sensor != sensor]
+            told.append(replace(worst, start_s=start_s, channel=None))
+        return told
+
+    def _peak(self, one: _Open, row: Row) -> None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            excess = np.where(row.score > row.limit, row.score / np.maximum(row.limit, 1e-300), -np.inf)
+        k = int(np.argmax(excess))
+        old = one.score / max(one.limit, 1e-300) if np.isfinite(one.score) else -np.inf
+        if excess[k] > old:
+            one.score, one.limit = float(row.score[k]), float(row.limit[k])
+
+    def _fault(self, c: int | None, one: _Open, end_s: float | None) -> Event:
+        watch = self._watch
+        kind = "unknown" if c is None else one.shape.kind(float(watch.period_s[c]), float(watch.sigma[c]))
+        sensor, channel = (None, None) if c is None else (watch.sensor[c], watch.channel[c])
+        score, limit = (x if np.isfinite(x) else None for x in (one.score, one.limit))
+        return Event(one.start_s, end_s, "sensor", sensor, channel, kind, score, limit, watch.method)
+
+    def _silences(self, row: Row) -> list[Event]:
+        """A sensor is silent when all its channels are; a channel, when its sensor still speaks."""
+        assert self._first is not None
+        since_first = row.time - self._first
+        # What spoke at the last tick is not silent because no tick came since.
+        silence = np.where(row.silence <= row.gap_s, 0.0, np.minimum(row.silence, since_first))
+        silent = silence > self._watch.silent_after_s
+        missing: dict[tuple[str, str | None], tuple[float, float]] = {}
+        if silent.any():
+            for sensor, channels in self._of.items():
+                if silent[channels].all():
+                    missing[sensor, None] = self._since(row.time, channels, silence)
+                else:
+                    for c in channels:
+                        if silent[c]:
+                            missing[sensor, self._watch.channel[c]] = self._since(row.time, [c], silence)
+        ended = []
+        for name in [name for name in self._silent if name not in missing]:
+            one = self._silent.pop(name)
+            ended.append(self._miss(name, one, one.last_s))
+        for name, (since, allowed) in missing.items():
+            one = self._silent.setdefault(name, _Open(since, row.time, limit=allowed))
+            one.last_s, one.score = row.time, row.time - one.start_s
+        longest = max(GAP_S, float(self._watch.silent_after_s.max()))
+        if row.gap_s > longest:
+            gap = row.time - row.gap_s, row.time, "sensor", None, None, "miss", row.gap_s, longest, self._watch.method
+            ended.append(Event(*gap))
+        return ended
+
+    def _since(self, now: float, channels: list[int], silence: Float[np.ndarray, " C"]) -> tuple[float, float]:
+        first = channels[int(np.argmin(silence[channels]))]
+        start = now - silence[first] + self._watch.period_s[first]
+        return float(start), float(self._watch.silent_after_s[first])
+
+    def _miss(self, name: tuple[str, str | None], one: _Open, end_s: float | None) -> Event:
+        sensor, channel = name
+        return Event(one.start_s, end_s, "sensor", sensor, channel, "miss", one.score, one.limit, self._watch.method)
