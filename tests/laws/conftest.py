@@ -1,3 +1,3 @@
-from laws.strict import strict
+from laws.strict import promoting, strict
 
-__all__ = ["strict"]
+__all__ = ["promoting", "strict"]

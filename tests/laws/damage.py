@@ -1,11 +1,17 @@
 """What is done to a healthy log. Spans are slices of rows; all of it happens in the warm second half."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from laws.case import Case
 from sensorfault.types import Sample
+
+
+def put(array, where, what) -> np.ndarray:
+    """A copy of the array with something else in one place. In NumPy: JAX compiles anew for every slice."""
+    copy = np.array(array)
+    copy[where] = what
+    return copy
 
 
 def half(rows: Sample) -> int:
@@ -19,17 +25,17 @@ def telling(case: Case) -> int:
 
 
 def lied(rows: Sample, span: slice, offset) -> Sample:
-    return rows._replace(value=rows.value.at[span].add(jnp.asarray(offset)))
+    return rows._replace(value=put(rows.value, span, np.asarray(rows.value)[span] + offset))
 
 
 def silenced(rows: Sample, span: slice, channels=slice(None)) -> Sample:
     """NaN, and marked as present: what is not a number is not there, whatever the log says."""
-    return rows._replace(value=rows.value.at[span, channels].set(jnp.nan))
+    return rows._replace(value=put(rows.value, (span, channels), np.nan))
 
 
 def absent(rows: Sample, span: slice, channels=slice(None)) -> Sample:
     return rows._replace(
-        present=rows.present.at[span, channels].set(False), fresh=rows.fresh.at[span, channels].set(False)
+        present=put(rows.present, (span, channels), False), fresh=put(rows.fresh, (span, channels), False)
     )
 
 
@@ -37,7 +43,7 @@ def holed(rows: Sample, row: int) -> Sample:
     """One NaN in each floating array of the block."""
 
     def hole(x):
-        return x.at[(row, *[0] * (x.ndim - 1))].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
+        return put(x, (row, *[0] * (x.ndim - 1)), np.nan) if np.issubdtype(x.dtype, np.floating) else x
 
     return rows._replace(block=jax.tree.map(hole, rows.block))
 

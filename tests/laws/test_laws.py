@@ -66,7 +66,7 @@ def test_healthy_is_ok_and_a_lie_is_named(case: Case) -> None:
 @every_case
 def test_masks_are_consistent(case: Case) -> None:
     told, rows = trouble(case), troubled(case)
-    trust, fresh = told.reports.trust, np.asarray(rows.fresh & jnp.isfinite(rows.value))
+    trust, fresh = told.reports.trust, np.asarray(rows.fresh) & np.isfinite(rows.value)
     assert not (trust.measured & ~fresh).any()
     assert not (trust.filled & trust.measured).any()
     assert not (trust.learn & ~trust.measured).any()
@@ -138,7 +138,7 @@ def test_what_may_not_learn_does_not(case: Case) -> None:
 
 
 def with_limit(monitor: Monitor, report: Report, limit: float) -> Monitor:
-    fixed = [Fixed(jnp.full(limits.shape[1:], limit)) for limits in report.limits]
+    fixed = [Fixed(jnp.full(limits.shape[1:], limit, float)) for limits in report.limits]
     return eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, fixed)
 
 
@@ -225,7 +225,7 @@ def test_a_fleet_is_its_vehicles(case: Case, vehicles: int) -> None:
         return fleet(monitor, states, rows, lambda r: (r.verdict, r.residual.value, r.trust.value))
 
     def stack(trees):
-        return jax.tree.map(lambda *x: jnp.stack(x), *trees)
+        return jax.tree.map(lambda *x: np.stack(x), *trees)
 
     state = case.monitor.init()
     states, told = together(case.monitor, stack([state] * vehicles), stack(logs))
@@ -247,7 +247,7 @@ def test_a_fleet_is_its_vehicles(case: Case, vehicles: int) -> None:
 def test_one_compilation_a_shape(case: Case) -> None:
     """Neither another log nor other numbers in the monitor compile the replay again."""
     rows = troubled(case)
-    shifted = jax.tree.map(lambda x: x * 1.5 if jnp.issubdtype(x.dtype, jnp.floating) else x, case.monitor)
+    shifted = jax.tree.map(lambda x: x * 1.5 if np.issubdtype(x.dtype, np.floating) else x, case.monitor)
     start = case.monitor.init()
     healthy(case)
     with compilations() as made:
@@ -282,8 +282,8 @@ def test_back_after_a_dropout(case: Case) -> None:
 @every_case
 def test_back_after_a_gap_in_the_clock(case: Case) -> None:
     start = half(case.rows)
-    later = jnp.where(jnp.arange(case.rows.time.size) < start, 0.0, 60.0)
-    rows = case.rows._replace(time=case.rows.time + later)
+    later = np.where(np.arange(case.rows.time.size) < start, 0.0, 60.0)
+    rows = case.rows._replace(time=np.asarray(case.rows.time) + later)
     assert_back(case, walk(case.monitor, rows), start, rows)
 
 
@@ -304,7 +304,7 @@ def test_false_alarms_come_at_the_designed_rate(case: Case) -> None:
     assert case.rate
     assert case.quiet
     vehicles, long = case.quiet.time.shape
-    states = jax.tree.map(lambda x: jnp.broadcast_to(x, (vehicles, *x.shape)), case.monitor.init())
+    states = jax.tree.map(lambda x: np.broadcast_to(x, (vehicles, *x.shape)), case.monitor.init())
     _, channel = jax.jit(lambda m, s, r: fleet(m, s, r, lambda report: report.verdict.channel))(
         case.monitor, states, case.quiet
     )

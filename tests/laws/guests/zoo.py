@@ -82,7 +82,7 @@ def kalman() -> Case:
         lie=np.array([20.0, 20.0, 20.0]),
         back_s=0.5,
         permuted=lambda order: three_positions(order, limit=float(norm.isf(rate / 2))),
-        quiet=jax.tree.map(lambda *one: jnp.stack(one), *quiet),
+        quiet=jax.tree.map(lambda *one: np.stack(one), *quiet),
         rate=rate,
     )
 
@@ -131,7 +131,7 @@ def learner() -> Case:
 
     def build(order=(0, 1)) -> Monitor:
         sigma = RunningSigma(jnp.asarray(8.0, float), jnp.asarray(100.0, float), 2)
-        rebuild = Rebuild(jnp.asarray(0.5, float), 2)
+        rebuild = Rebuild(jnp.asarray(0.5, float), jnp.asarray(0.1, float), 2)
         return monitor(Nlms(jnp.asarray(0.5, float), 2), (Branch(Absolute(), sigma),), (0, 1), recovery=rebuild)
 
     return Case(

@@ -1,0 +1,44 @@
+"""The forward pass of the one-hidden-layer network, in plain NumPy."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.special import expit
+
+from laws.guests.zoo import log
+from laws.walk import walk
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.drop import Drop
+from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.threshold.fixed import Fixed
+
+CHANNELS, HIDDEN = 4, 7
+ACTIVATIONS = {"identity": lambda x: x, "sigmoid": expit, "tanh": np.tanh, "relu": lambda x: np.maximum(x, 0)}
+
+
+@pytest.mark.usefixtures("promoting")
+@pytest.mark.parametrize("activation", ACTIVATIONS)
+def test_forward_pass(activation: str) -> None:
+    rng = np.random.default_rng(11)
+    w, b, beta = rng.standard_normal((HIDDEN, CHANNELS)), rng.standard_normal(HIDDEN), rng.random((CHANNELS, HIDDEN))
+    offset, center, half = rng.standard_normal((3, CHANNELS))
+    half = np.abs(half) + 0.1
+    watched = np.array([True, True, True, False])
+    residual = Reconstruction(
+        *map(jnp.asarray, (w, b, beta, offset, center, half, np.eye(CHANNELS), watched)), activation
+    )
+    value = center + half * rng.uniform(-1.5, 1.5, (20, CHANNELS))
+    hold_s = jnp.zeros(CHANNELS)
+    branch = Branch(Norm(jnp.ones(CHANNELS)), Fixed(jnp.array([jnp.inf])))
+    told = walk(Monitor(residual, (branch,), Exceed(hold_s), Drop(), hold_s, (0, 1, 2, 3)), log(value)).reports
+    for k in range(20):
+        x = (value[k] - center) / half
+        h = [ACTIVATIONS[activation](sum(w[j, i] * x[i] for i in range(CHANNELS)) + b[j]) for j in range(HIDDEN)]
+        rebuilt = (beta @ h + offset) * half + center
+        error = np.where(watched, value[k] - rebuilt, 0.0)
+        np.testing.assert_allclose(told.residual.value[k], error, rtol=1e-12, atol=1e-12)
+        np.testing.assert_array_equal(told.residual.valid[k], watched)
+        np.testing.assert_allclose(told.scores[0].value[k, 0], np.linalg.norm(error[watched]), rtol=1e-12)
+        np.testing.assert_allclose(told.scores[0].blame[k, 0], error**2 / (error @ error), rtol=1e-10, atol=1e-12)
