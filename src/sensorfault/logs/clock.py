@@ -49,6 +49,9 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
     Raises:
         LogError: no such column, no times in it, one row only, or more than a fifth of the rows going back.
     """
+    if column not in source.frame.columns:
+        known = ", ".join(source.frame.columns)
+        raise LogError(f"{source.path}: there is no time column '{column}'; take one of {known}.")
     zero, time = seconds(source, column, unit)
     name, notes = source.path.name, []
     usable = np.flatnonzero(np.isfinite(time))

@@ -10,6 +10,7 @@ from sensorfault.logs.source import Source
 from sensorfault.logs.table import LogError
 
 MISSING = ["NA", "N/A", "NULL", "null", "None", "none", "-", ""]
+_PADDING = ' \t\r"'
 _SAMPLE_ROWS = 1000
 _EXACT_IN_FLOAT = 2**53
 
@@ -74,7 +75,7 @@ def _dtypes(content: Path | bytes, dialect: Dialect, skip: int) -> list[type[pl.
 
 
 def _dtype(column: pl.Series) -> type[pl.DataType]:
-    cells = [cell.strip() for cell in column.drop_nulls()]
+    cells = [cell.strip(_PADDING) for cell in column.drop_nulls()]
     cells = [cell for cell in cells if not missing(cell)]
     if not all(is_number(cell) for cell in cells):
         return pl.String
@@ -97,7 +98,7 @@ def _numbers(frame: pl.DataFrame) -> pl.DataFrame:
     """Text columns become numbers where every cell is one."""
     columns = []
     for column in frame:
-        text = column.str.strip_chars()
+        text = column.str.strip_chars(_PADDING)
         text = text.set(text.is_in(MISSING), None)
         number = text.cast(pl.Float64, strict=False)
         columns.append(number if number.null_count() == text.null_count() else text)

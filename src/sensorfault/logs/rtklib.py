@@ -87,11 +87,14 @@ def read_tag(path: Path, stream: Path, counter_s: np.ndarray, line: np.ndarray) 
     Raises:
         LogError: not a tag file, or one of another stream.
     """
+    if not path.is_file():
+        raise LogError(f"{path}: there is no time tag; put it beside {stream.name}, or take the key 'tag' out.")
     raw = path.read_bytes()
     if raw[:14] != b"TIMETAG RTKLIB" or len(raw) < 76 + 8 * 2:
         raise LogError(f"{path}: this is not a time tag of RTKLIB; take the key 'tag' out of vehicle.toml.")
     second, fraction = struct.unpack("<Id", raw[64:76])
     pair = np.frombuffer(raw, "<u4", offset=76, count=(len(raw) - 76) // 8 * 2).reshape(-1, 2)
+    pair = pair[np.diff(pair[:, 1], prepend=0) > 0]  # a tag that brought nothing says nothing of when
     text = stream.read_bytes()
     end = 1 + np.flatnonzero(np.frombuffer(text, np.uint8) == ord("\n"))
     if pair[-1, 1] == len(text) + len(end) and b"\r" not in text:

@@ -11,20 +11,20 @@ def file_lines(file: FileEntry) -> list[str]:
     lines += [
         f"{key} = {quote(value)}" for key, value in (("path", file.path), ("time", file.time)) if value is not None
     ]
-    lines.append(f"unit = {quote(file.unit)}" + (f"  # {file.why}" if file.why else ""))
+    lines.append(f"unit = {quote(file.unit)}" + remark(file.why))
     if file.offset_s:
         lines.append(f"offset_s = {file.offset_s!r}")
     if file.tag is not None:
         lines.append(f"tag = {quote(file.tag)}")
     if file.left_out:
         lines.append("# Columns left out:")
-        lines += [f"#   {column}: {reason}" for column, reason in file.left_out]
+        lines += [comment(f"  {column}: {reason}") for column, reason in file.left_out]
     return lines
 
 
 def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
     """The tables [sensor.NAME] and [sensor.NAME.channel]; `single`: the log is one file, so it need not be named."""
-    lines = [f"[sensor.{key_of(sensor.name)}]" + (f"  # {sensor.why}" if sensor.why else "")]
+    lines = [f"[sensor.{key_of(sensor.name)}]" + remark(sensor.why)]
     if not (single and sensor.file == "log"):
         lines.append(f"file = {quote(sensor.file)}")
     if sensor.held:
@@ -40,8 +40,18 @@ def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
         cell = f"column = {quote(channel.column)}, unit = {quote(channel.unit)}"
         cell += f", missing = {channel.missing!r}" if channel.missing is not None else ""
         cell += f", epoch = {quote(channel.epoch)}" if channel.epoch is not None else ""
-        lines.append(f"{key_of(channel.name)} = {{ {cell} }}" + (f"  # {channel.why}" if channel.why else ""))
+        lines.append(f"{key_of(channel.name)} = {{ {cell} }}" + remark(channel.why))
     return lines
+
+
+def comment(text: str) -> str:
+    """A line of comment; what would end the line is a blank."""
+    return "#" + "".join(letter if letter.isprintable() else " " for letter in f" {text}")
+
+
+def remark(text: str) -> str:
+    """A comment behind a line, if there is one."""
+    return f"  {comment(text)}" if text else ""
 
 
 def quote(text: str) -> str:

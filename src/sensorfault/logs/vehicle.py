@@ -30,7 +30,7 @@ from pathlib import Path
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.table import LogError
 from sensorfault.logs.toml_table import TomlTable
-from sensorfault.logs.toml_text import file_lines, quote, sensor_lines
+from sensorfault.logs.toml_text import comment, file_lines, quote, sensor_lines
 from sensorfault.logs.units import UNITS, known
 
 TIME_UNITS = ("s", "ms", "us", "ns", "iso8601")
@@ -78,7 +78,7 @@ class VehicleFile:
 
     def to_toml(self) -> str:
         """The TOML text, with the reason of each guess as a comment; it parses back to the same."""
-        lines = [*(f"# {note}" for note in self.notes), "[vehicle]", f"name = {quote(self.name)}"]
+        lines = [*(comment(note) for note in self.notes), "[vehicle]", f"name = {quote(self.name)}"]
         if self.epoch_s is not None:
             lines.append(f"epoch_s = {self.epoch_s!r}")
         if self.zero_s is not None:

@@ -1,0 +1,201 @@
+"""A guess is right on logs whose makers and units differ, and parses back to itself."""
+
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from sensorfault.logs import LogError, VehicleFile, guess, read
+from sensorfault.logs.words import read_name
+
+ROWS = 4000
+TIME = np.arange(ROWS) * 0.02
+RANDOM = np.random.default_rng(11)
+TURN = 0.3 * np.sin(TIME / 7)  # [rad/s]
+SPEED = 12 + 5 * np.sin(TIME / 11)  # [m/s]
+HEADING = np.cumsum(TURN) * 0.02 + 3
+NORTH, EAST = np.cumsum(SPEED * np.cos(HEADING)) * 0.02, np.cumsum(SPEED * np.sin(HEADING)) * 0.02
+LATITUDE, LONGITUDE = 51 + np.degrees(NORTH / 6.371e6), 13.7 + np.degrees(EAST / 6.371e6 / np.cos(np.radians(51)))
+ACC = RANDOM.normal(size=(ROWS, 3)) * 0.3 + [0.2, -0.1, 9.81]
+GYRO = RANDOM.normal(size=(ROWS, 3)) * 0.02 + np.column_stack([0 * TURN, 0 * TURN, TURN])
+FIX = np.arange(ROWS) // 5 * 5  # the row of the last fix: 10 Hz on 50 Hz
+
+
+def save(folder: Path, table: dict[str, np.ndarray], name: str = "drive.csv") -> Path:
+    path = folder / name
+    frame = pl.DataFrame(table)
+    if path.suffix == ".parquet":
+        frame.write_parquet(path)
+    else:
+        frame.write_csv(path, include_header=not name.startswith("bare"))
+    return path
+
+
+def described(vehicle: VehicleFile) -> dict[str, dict[str, tuple[str, str]]]:
+    return {s.name: {c.name: (c.column, c.unit) for c in s.channels} for s in vehicle.sensors}
+
+
+def round_trip(vehicle: VehicleFile) -> None:
+    text = vehicle.to_toml()
+    assert VehicleFile.parse(text) == vehicle
+    assert text.count("#") > len(vehicle.sensors)
+
+
+@pytest.mark.parametrize("name", ["drive.csv", "drive.parquet"])
+@pytest.mark.parametrize(
+    ("acc", "acc_unit", "gyro", "gyro_unit", "speed", "speed_unit"),
+    [
+        (1.0, "m/s^2", 1.0, "rad/s", 1.0, "m/s"),
+        (1 / 9.80665, "g", 180 / np.pi, "deg/s", 3.6, "km/h"),
+        (1000 / 9.80665, "mg", 180 / np.pi, "deg/s", 3600 / 1852, "kn"),
+    ],
+)
+def test_a_car_log(
+    tmp_path: Path, name: str, acc: float, acc_unit: str, gyro: float, gyro_unit: str, speed: float, speed_unit: str
+) -> None:
+    table = {
+        "millis": np.round(1.4e12 + TIME * 1e3, 3),
+        "ax": ACC[:, 0] * acc, "ay": ACC[:, 1] * acc, "az": ACC[:, 2] * acc,
+        "rollrate": GYRO[:, 0] * gyro, "pitchrate": GYRO[:, 1] * gyro, "yawrate": GYRO[:, 2] * gyro,
+        "speed": (SPEED * speed)[FIX], "course": (np.degrees(HEADING) % 360)[FIX],
+        "latitude": LATITUDE[FIX], "longitude": LONGITUDE[FIX], "altitude": (120 + RANDOM.normal(size=ROWS))[FIX],
+        "hdop": np.round(RANDOM.uniform(1, 2, ROWS), 1), "fix": np.full(ROWS, 3),
+        "utc": 123825300 + FIX * 20,
+    }  # fmt: skip
+    vehicle = guess(save(tmp_path, table, name))
+    assert (vehicle.files[0].time, vehicle.files[0].unit) == ("millis", "ms")
+    assert described(vehicle) == {
+        "accelerometer": {axis: (f"a{axis}", acc_unit) for axis in "xyz"},
+        "gyro": {"x": ("rollrate", gyro_unit), "y": ("pitchrate", gyro_unit), "z": ("yawrate", gyro_unit)},
+        "gnss": {"speed": ("speed", speed_unit)},
+        "gnss_course": {"course": ("course", "deg")},
+        "gnss_position": {
+            "latitude": ("latitude", "deg"),
+            "longitude": ("longitude", "deg"),
+            "altitude": ("altitude", "m"),
+        },
+    }
+    assert {s.name for s in vehicle.sensors if s.held} == {"gnss", "gnss_course", "gnss_position"}
+    assert {s.name for s in vehicle.sensors if not s.watch} == {"gnss_course", "gnss_position"}
+    assert {s.epoch for s in vehicle.sensors if s.held} == {"utc"}
+    assert {column for column, _ in vehicle.files[0].left_out} == {"hdop", "fix", "utc"}
+    round_trip(vehicle)
+    log = read(tmp_path / name)
+    assert log.fresh[:, log.index("speed")].sum() == ROWS // 5
+    np.testing.assert_allclose(log.value[:, log.index("gyro.z")], GYRO[:, 2], rtol=1e-9)
+    np.testing.assert_allclose(log.value[:, log.index("speed")], SPEED[FIX], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("gravity", "unit"), [(1.0, "g"), (9.80665, "m/s^2")])
+@pytest.mark.parametrize("gyro_first", [False, True])
+def test_a_file_without_names(tmp_path: Path, gravity: float, unit: str, gyro_first: bool) -> None:
+    acc, gyro = ACC / 9.80665 * gravity, np.degrees(GYRO)
+    order = np.column_stack([gyro, acc] if gyro_first else [acc, gyro])
+    table = {f"a{i}": column for i, column in enumerate(order.T)} | {"t": 261906 + np.round(TIME * 1e3).astype(int)}
+    vehicle = guess(save(tmp_path, table, "bare.csv"))
+    assert (vehicle.files[0].time, vehicle.files[0].unit) == ("c7", "ms")
+    first, second = ("gyro", "accelerometer") if gyro_first else ("accelerometer", "gyro")
+    units = {"accelerometer": unit, "gyro": "deg/s"}
+    assert described(vehicle) == {
+        first: {axis: (f"c{i + 1}", units[first]) for i, axis in enumerate("xyz")},
+        second: {axis: (f"c{i + 4}", units[second]) for i, axis in enumerate("xyz")},
+    }
+    round_trip(vehicle)
+
+
+def test_files_of_one_drive_keep_their_sensors_apart(tmp_path: Path) -> None:
+    stamp = (1_734_501_485_000_000_000 + np.round(TIME * 1e9)).astype(np.int64)
+    for anchor in (3, 5):
+        save(tmp_path, {"stamp": stamp + anchor, "distance": RANDOM.uniform(3, 9, ROWS)}, f"run_1_A{anchor}.csv")
+    (tmp_path / "notes.txt").write_text("it rained\n")
+    vehicle = guess(tmp_path)
+    assert described(vehicle) == {f"a{k}_range": {"range": ("distance", "m")} for k in (3, 5)}
+    assert [file.unit for file in vehicle.files] == ["ns", "ns"]
+    assert any("notes.txt" in note for note in vehicle.notes)
+    round_trip(vehicle)
+    assert len(read(tmp_path)) == ROWS
+
+
+def test_two_drives_in_a_folder_are_refused(tmp_path: Path) -> None:
+    for run in (1, 2):
+        save(tmp_path, {"Time [s]": TIME, "V North [m/s]": RANDOM.normal(size=ROWS)}, f"run{run}.csv")
+    with pytest.raises(LogError, match=r"run1.csv and run2.csv have the same columns .* name the files of one drive"):
+        guess(tmp_path)
+
+
+def test_minus_one_among_ranges_is_no_value(tmp_path: Path) -> None:
+    ranges = np.where(RANDOM.random(ROWS) < 0.3, -1.0, RANDOM.uniform(5, 50, ROWS))
+    path = save(tmp_path, {"timestamp": 1.7e9 + TIME, "distance_r0": ranges})
+    assert guess(path).sensors[0].channels[0].missing == -1
+    log = read(path)
+    np.testing.assert_array_equal(np.isnan(log.value[:, 0]), ranges == -1)
+
+
+@pytest.mark.parametrize(
+    ("scale", "digits", "unit"), [(1.0, 3, "s"), (1e3, 0, "ms"), (1e6, 0, "us")], ids=["s", "ms", "us"]
+)
+def test_the_unit_of_a_counter_by_its_interval(tmp_path: Path, scale: float, digits: int, unit: str) -> None:
+    path = save(tmp_path, {"timestamp": np.round((327 + TIME) * scale, digits), "ax": ACC[:, 0]})
+    assert guess(path).files[0].unit == unit
+    assert read(path).period_s == pytest.approx(0.02)
+
+
+def test_roll_and_pitch_are_watched_unless_they_wrap(tmp_path: Path) -> None:
+    table = {
+        "t": TIME,
+        "roll": RANDOM.normal(size=ROWS) * 0.1,
+        "pitch": (RANDOM.normal(size=ROWS) * 3) % 360,
+        "yaw": HEADING,
+    }
+    watched = {s.name: s.watch for s in guess(save(tmp_path, table)).sensors}
+    assert watched == {"attitude": True, "heading": False}
+
+
+def test_unknown_names_are_kept_and_what_wanders_is_not_watched(tmp_path: Path) -> None:
+    table = {
+        "t": TIME,
+        "flux": RANDOM.normal(size=ROWS),
+        "charge": 100 - TIME + RANDOM.normal(size=ROWS),
+        "gear": RANDOM.integers(1, 6, ROWS),
+        "odometer": np.floor(TIME * 100),
+        "same": np.full(ROWS, 2.5),
+    }
+    vehicle = guess(save(tmp_path, table))
+    assert {s.name: s.watch for s in vehicle.sensors} == {"flux": True, "charge": False}
+    assert {column for column, _ in vehicle.files[0].left_out} == {"gear", "odometer", "same"}
+
+
+@pytest.mark.parametrize(
+    ("column", "kind", "axis", "unit"),
+    [
+        ("ax", "accelerometer", "x", ""),
+        ("accel_z", "accelerometer", "z", ""),
+        ("IMU::UncompAccel::X [m/s^2]", "accelerometer", "x", "m/s^2"),
+        ("linear_acceleration.y", "accelerometer", "y", ""),
+        ("IMU::AngularRate::X", "gyro", "x", ""),
+        ("angular_velocity.z", "gyro", "z", ""),
+        ("yaw_rate_deg_s", "gyro", "z", "deg/s"),
+        ("rollspeed", "gyro", "x", ""),
+        ("IMU::UncompMag::X [Gauss]", "magnetometer", "x", "gauss"),
+        ("latitude(deg)", "position", "latitude", "deg"),
+        ("Longitude [rad]", "position", "longitude", "rad"),
+        ("V North [m/s]", "velocity", "north", "m/s"),
+        ("vn(m/s)", "velocity", "north", "m/s"),
+        ("vel_d_m_s", "velocity", "down", "m/s"),
+        ("DVL X [m/s]", "velocity", "x", "m/s"),
+        ("indicated_airspeed_m_s", "airspeed", "indicated_airspeed", "m/s"),
+        ("cog_rad", "heading", "course", "rad"),
+        ("field.distanceFromTag", "range", "range", ""),
+        ("distance_r2", "range", "r2", ""),
+        ("q[3]", "quaternion", "3", ""),
+        ("pressure_hpa", "barometer", "pressure", "hPa"),
+        ("sdn(m)", "quality", "sdn", "m"),
+        ("satellites_used", "quality", "satellites_used", ""),
+        ("Time::TimeStartup [ns]", "time", "time_time_startup", "ns"),
+        ("control[1]", "", "control_1", ""),
+    ],
+)
+def test_names(column: str, kind: str, axis: str, unit: str) -> None:
+    meaning = read_name(column)
+    assert (meaning.kind, meaning.axis, meaning.unit) == (kind, axis, unit)

@@ -1,0 +1,77 @@
+"""Sane guesses on logs that nobody here made: by air, by water and by radio."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sensorfault.logs import LogError, VehicleFile, guess, read
+
+pytestmark = pytest.mark.real
+
+
+def sane(path: Path | list[Path]) -> dict[str, set[str]]:
+    """Sensors with their channels as `name [unit]`, after the guess has parsed back and the log has been read."""
+    vehicle = guess(path)
+    assert VehicleFile.parse(vehicle.to_toml()) == vehicle
+    log = read(path)
+    assert (np.diff(log.time) > 0).all()
+    assert not (log.fresh & ~np.isfinite(log.value)).any()
+    return {s.name: {f"{c.name} [{c.unit}]" for c in s.channels} for s in vehicle.sensors}
+
+
+def test_underwater_run(real_data: Path) -> None:
+    folder = real_data / "underwater" / "snapir_auv"
+    found = sane([folder / "GT_trajectory1.csv", folder / "DVL_trajectory1.csv"])
+    assert found["dvl"] == {"x [m/s]", "y [m/s]", "z [m/s]"}
+    assert found["gnss_position"] == {"longitude [rad]", "latitude [rad]", "altitude [m]"}
+    with pytest.raises(LogError, match="two drives"):
+        guess(folder)
+
+
+def test_acoustic_ranges(real_data: Path) -> None:
+    path = real_data / "underwater" / "ugps_g2_acoustic" / "2024-12-05_22-12-34_g2_acoustic.csv"
+    assert sane(path)["range"] == {f"r{k} [m]" for k in range(4)}
+    log = read(path)
+    ranges = log.value[:, log.of("range")]
+    assert np.nanmin(ranges) >= 0  # -1 stands for none
+    assert np.isnan(ranges[0]).all()
+
+
+def test_fixed_wing_topics(real_data: Path) -> None:
+    folder = real_data / "uav" / "px4_fw_proto_flt09"
+    found = sane(folder)
+    assert found["gyro"] == {"x [rad/s]", "y [rad/s]", "z [rad/s]"}
+    assert found["vehicle_gps_position_gnss_position"] == {"latitude [1e-7deg]", "longitude [1e-7deg]"}
+    assert found["vehicle_gps_position_height"] == {"altitude [mm]"}
+    log = read(folder)
+    latitude = np.degrees(log.value[:, log.index("vehicle_gps_position_gnss_position.latitude")])
+    assert np.nanmedian(latitude) == pytest.approx(45.22, abs=0.05)
+    assert log.duration_s == pytest.approx(530, abs=2)
+
+
+def test_radio_ranges_of_four_anchors(real_data: Path) -> None:
+    found = sane(real_data / "ranging" / "uwb_outdoor" / "LOS" / "Trajectory_A" / "Case_1")
+    assert {name for name in found if name.endswith("range")} == {f"a{k}_range" for k in (3, 5, 9, 12)}
+
+
+def test_an_imu_with_two_of_each(real_data: Path) -> None:
+    found = sane(real_data / "gnss" / "instinct_tckf_static" / "vn310-imu.csv")
+    three = {"x [m/s^2]", "y [m/s^2]", "z [m/s^2]"}
+    assert found["imu_accelerometer"] == found["imu_uncomp_accelerometer"] == three
+    assert found["imu_gyro"] == {"x [rad/s]", "y [rad/s]", "z [rad/s]"}
+
+
+def test_a_walk_whose_recording_began_inside_a_line(real_data: Path) -> None:
+    path = real_data / "gnss" / "f9p_walk0827" / "imu_1730.csv"
+    found = sane(path)
+    assert set(found) == {"accelerometer", "gyro"}
+    log = read(path)
+    assert len(log) == 20455
+    assert any("first line is cut off" in note for note in log.notes)
+    assert log.epoch_s == pytest.approx(1756402240.96 - 18, abs=1.0)
+
+
+def test_one_row_for_each_satellite_is_no_log(real_data: Path) -> None:
+    with pytest.raises(LogError, match=r"no time column|out of order"):
+        read(real_data / "gnss" / "smartloc_berlin_potsdamer_platz" / "RXM-RAWX.csv")

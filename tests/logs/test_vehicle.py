@@ -1,0 +1,136 @@
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sensorfault.logs import LogError, VehicleFile, read
+from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
+from sensorfault.logs.units import UNITS
+
+GOOD = """
+[vehicle]
+name = "car"
+[file.log]
+time = "t"
+unit = "ms"
+[sensor.gyro.channel]
+x = { column = "wx", unit = "deg/s" }
+"""
+
+names = st.text(st.characters(exclude_categories=("Cs", "Cc")), min_size=1, max_size=8)
+keys = names.filter(lambda name: "." not in name)
+reasons = st.text(st.characters(exclude_categories=("Cs", "Cc", "Zl", "Zp")), max_size=8)
+finite = st.floats(allow_nan=False, allow_infinity=False)
+channels = st.builds(
+    ChannelEntry, keys, names, st.sampled_from(sorted(UNITS)), st.none() | finite, st.none() | names, why=reasons
+)
+
+
+@st.composite
+def vehicles(draw: st.DrawFn) -> VehicleFile:
+    files = draw(
+        st.lists(
+            st.builds(
+                FileEntry, keys, st.none() | names, st.none() | names, st.sampled_from(["s", "ms", "iso8601"]), finite
+            ),
+            min_size=1,
+            max_size=3,
+            unique_by=lambda file: file.name,
+        )
+    )
+    sensor = st.builds(
+        SensorEntry,
+        keys,
+        st.lists(channels, min_size=1, max_size=3, unique_by=lambda channel: channel.name).map(tuple),
+        st.sampled_from([file.name for file in files]),
+        st.booleans(),
+        st.none() | names,
+        st.booleans(),
+        st.none() | finite,
+        why=reasons,
+    )
+    sensors = draw(st.lists(sensor, min_size=1, max_size=3, unique_by=lambda sensor: sensor.name))
+    zero = st.none() | finite
+    return VehicleFile(draw(names), tuple(files), tuple(sensors), draw(zero), draw(zero), draw(st.lists(reasons)))
+
+
+@settings(max_examples=100, deadline=None)
+@given(vehicles())
+def test_what_is_written_parses_to_the_same(vehicle: VehicleFile) -> None:
+    assert VehicleFile.parse(vehicle.to_toml()) == vehicle
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("[vehicle]", "[vehicle", "this is not TOML .*; mend that line"),
+        ('name = "car"', 'nmae = "car"', r"\[vehicle\] has an unknown key 'nmae'; take one of name"),
+        (
+            "[vehicle]",
+            "[vehikel]\n[vehicle]",
+            "the top has an unknown key 'vehikel'; take one of vehicle, file, sensor",
+        ),
+        ('unit = "ms"', 'unit = "min"', r"\[file.log\] unit = 'min' is no unit of time; take one of s, ms"),
+        ('unit = "deg/s"', 'unit = "furlong"', r"\[sensor.gyro.channel.x\] unit = 'furlong' is unknown; take one of"),
+        ('time = "t"', "time = 7", r"\[file.log\] time = 7 must be a text in quotes"),
+        ('time = "t"', 'tiem = "t"', r"\[file.log\] has an unknown key 'tiem'"),
+        ('column = "wx", ', "", r"\[sensor.gyro.channel.x\] names no column"),
+        ('x = { column = "wx", unit = "deg/s" }', "", r"\[sensor.gyro.channel\] is empty"),
+        ('{ column = "wx", unit = "deg/s" }', '"wx"', r"'sensor.gyro.channel.x' must be a table"),
+        (
+            "[sensor.gyro.channel]",
+            '[sensor.gyro]\nfile = "imu"\n[sensor.gyro.channel]',
+            "file = 'imu' is not described",
+        ),
+        ("[sensor.gyro.channel]", "[file.other]\n[sensor.gyro.channel]", "does not say which file it is in"),
+        ("[sensor.gyro.channel]", "[sensor.gyro]\nheld = 1\n[sensor.gyro.channel]", "held = 1 must be true or false"),
+        ("[sensor.gyro.channel]", '[sensor."gy.ro".channel]', "the sensor name 'gy.ro' has a dot"),
+    ],
+)
+def test_errors_name_table_key_and_mend(old: str, new: str, sentence: str) -> None:
+    assert old in GOOD
+    with pytest.raises(LogError, match=sentence) as raised:
+        VehicleFile.parse(GOOD.replace(old, new), "car/vehicle.toml")
+    assert str(raised.value).startswith("car/vehicle.toml: ")
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("table", ["file", "sensor"])
+def test_a_table_that_is_missing(table: str) -> None:
+    kept = "\n".join(
+        line for line in GOOD.splitlines() if not line.startswith(("t", "u", "x")) and f"[{table}" not in line
+    )
+    with pytest.raises(LogError, match=rf"no \[{table}.NAME\] table"):
+        VehicleFile.parse(kept)
+
+
+def test_a_vehicle_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="cannot read this vehicle file"):
+        VehicleFile.read(tmp_path / "vehicle.toml")
+
+
+def test_which_vehicle_file_is_taken(tmp_path: Path) -> None:
+    for name in ("drive.csv", "other.csv"):
+        (tmp_path / name).write_text("t,wx\n" + "".join(f"{20 * k},{k % 9}.5\n" for k in range(50)))
+    named = read(tmp_path / "drive.csv", VehicleFile.parse(GOOD.replace("car", "given")))
+    assert named.name == "given"
+    assert read(tmp_path / "drive.csv").name == "drive"  # guessed
+    (tmp_path / "vehicle.toml").write_text(GOOD.replace("car", "beside"))
+    assert read(tmp_path / "drive.csv").name == "beside"
+    (tmp_path / "vehicle.toml").write_text(GOOD.replace("car", "beside").replace("time", 'path = "other.csv"\ntime'))
+    assert read(tmp_path / "other.csv").name == "beside"
+    assert read(tmp_path / "drive.csv").name == "drive"  # that one describes another file
+    assert read(tmp_path).name == "beside"
+    (tmp_path / "drive.vehicle.toml").write_text(GOOD.replace("car", "own"))
+    assert read(tmp_path / "drive.csv").name == "own"
+    assert read(tmp_path / "drive.csv", tmp_path / "vehicle.toml").name == "beside"
+    assert any("guess" in note for note in read(tmp_path / "other.csv", None).notes) is False
+
+
+def test_a_described_file_that_is_missing(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("t,wx\n0,1\n1,2\n")
+    (tmp_path / "b.csv").write_text("t,wx\n0,1\n1,2\n")
+    vehicle = VehicleFile.parse(GOOD.replace("time", 'path = "c.csv"\ntime'))
+    with pytest.raises(LogError, match=r"path = 'c.csv' is not among a.csv, b.csv"):
+        read(tmp_path, vehicle)
