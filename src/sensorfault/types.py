@@ -34,7 +34,7 @@ class Residual(NamedTuple):
 
     `cov` comes from the filter or was fitted on healthy residuals; `noise` is the measurement variance in use.
     `valid`: testable now, that is fresh, finite and warmed up. `extra`: for statistics made for this residual only
-    (bank members on a leading axis, several horizons).
+    (bank members on a leading axis, several horizons). `out`: taken out of this sample by the Monitor, which sets it.
     """
 
     time: Float[Array, ""]
@@ -46,6 +46,7 @@ class Residual(NamedTuple):
     valid: Bool[Array, " C"]
     born: Bool[Array, " C"]
     extra: Any = ()
+    out: Bool[Array, " C"] | bool = False
 
 
 class Score(NamedTuple):

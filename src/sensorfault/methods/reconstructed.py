@@ -14,7 +14,7 @@ from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.reconstruction import Reconstruction
-from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
@@ -48,10 +48,10 @@ def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], 
     deaf = Monitor(
         residual=residual,
         branches=(
-            Branch(Norm(jnp.asarray(scaling.half)), ScaledMax(jnp.full(1, jnp.inf))),
+            Branch(Exchange(jnp.asarray(scaling.half)), ScaledMax(jnp.full(1, jnp.inf))),
             Branch(Repeats(channels), Fixed(jnp.full(channels, jnp.inf))),
         ),
-        decision=Exceed(hold),
+        decision=Exceed(hold, share=1.0),
         recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(READMIT_S), channels),
         hold_s=hold,
         owner=owners(log.channels, log.sensors),

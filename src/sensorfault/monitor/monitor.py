@@ -95,9 +95,11 @@ class Monitor(eqx.Module):
         silence = sample.time - state.seen
         sample, arrived = self._intake(state, sample, silence)
         residual, work = self.residual.evaluate(state.residual, sample)
-        residual = residual._replace(valid=residual.valid & sample.fresh & jnp.isfinite(residual.value))
+        nobody = jnp.zeros(len(self.owner), bool)
+        valid = residual.valid & sample.fresh & jnp.isfinite(residual.value)
+        residual = residual._replace(valid=valid, out=nobody)
 
-        first = self._judge(state, residual, jnp.zeros(len(self.owner), bool))
+        first = self._judge(state, residual, nobody)
         told, decided, struck, out = self._exclude(state, residual, first)
         verdict, gated = self._verdict(told, struck, out)
         trust, recovered = self.recovery.evaluate(state.recovery, (sample, residual, verdict, gated))
@@ -164,7 +166,7 @@ class Monitor(eqx.Module):
             worst = owner == owner[jnp.argmax(jnp.where(now, told.size, -jnp.inf))]
             struck = struck | (now & worst)
             out = out | (worst if self.together else now & worst)
-            again = self._judge(state, residual._replace(valid=residual.valid & ~out), struck)
+            again = self._judge(state, residual._replace(valid=residual.valid & ~out, out=out), struck)
             return again.told, again.decided, struck, out, rounds + 1
 
         start = first.told, first.decided, nobody, nobody, jnp.zeros((), jnp.int32)

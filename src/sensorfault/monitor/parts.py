@@ -8,6 +8,7 @@ from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.threshold.fixed import Fixed
@@ -18,7 +19,7 @@ PARTS: dict[str, type[eqx.Module]] = {
     for part in (
         *(Monitor, Branch),
         Reconstruction,
-        *(Norm, Repeats),
+        *(Norm, Exchange, Repeats),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),
         *(Drop, Rebuild),

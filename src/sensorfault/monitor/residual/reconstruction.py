@@ -7,32 +7,23 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.numerics.networks import ACTIVATIONS
-from sensorfault.types import NEVER, Residual, Sample, Trust
-
-PATIENCE_S = 60.0  # how long a doubted channel's last trusted value may stand in as an input of the others
-
-
-class _Inputs(NamedTuple):
-    trusted: Float[Array, " C"]  # last value taken at its own word [SI]
-    when: Float[Array, " C"]  # and when that was [s]
-    doubted: Bool[Array, " C"]  # the last new measurement was not
+from sensorfault.types import Residual, Sample, Trust
 
 
 class _Work(NamedTuple):
-    inputs: _Inputs
     value: Float[Array, " C"]
-    fresh: Bool[Array, " C"]
-    time: Float[Array, ""]
+    trusted: Float[Array, " C"]
 
 
 class Reconstruction(eqx.Module):
     """x~ = B f(W x + b) on inputs mapped to [-1, 1] by their training extremes.
 
     Min et al. 2021, equations (3)-(4). Channels with `watched` False carry no weight and are never valid. An absent
-    input is stood in for by its last trusted value, so that the other channels keep their verdicts; so is one that was
-    not trusted in the last sample, so that its fault is not smeared over the others, for at most PATIENCE_S: then all
-    are taken as measured, lest two channels go on blaming each other. `expected` is the reconstruction from the last
-    trusted value of the channel itself: a copy of a faulty value is no stand-in for it.
+    input is stood in for by its last trusted value, so that the other channels keep their verdicts.
+
+    `expected[k]` is the reconstruction of channel k from a sample in which x_k alone is exchanged for its last trusted
+    value, since a copy of a faulty value is no stand-in for it. `extra[k]` is the whole residual of that sample: what
+    would be left if k were the culprit (after the reconstruction-based contributions of Alcala & Qin 2009).
     """
 
     weights: Float[Array, "L C"]  # w
@@ -45,43 +36,34 @@ class Reconstruction(eqx.Module):
     watched: Bool[Array, " C"]
     activation: str = eqx.field(static=True, default="sigmoid")
 
-    def init(self) -> _Inputs:
-        shape = self.center.shape
-        return _Inputs(self.center, jnp.full(shape, NEVER), jnp.zeros(shape, bool))
+    def init(self) -> Float[Array, " C"]:
+        return self.center
 
-    def evaluate(self, state: _Inputs, sample: Sample) -> tuple[Residual, _Work]:
-        trusted = state.trusted
+    def evaluate(self, trusted: Float[Array, " C"], sample: Sample) -> tuple[Residual, _Work]:
         value = jnp.where(sample.present, sample.value, trusted)
-        replaced = state.doubted & (sample.time - state.when <= PATIENCE_S)
-        shared = jnp.where(replaced, trusted, value)
         f = ACTIVATIONS[self.activation]
         # x in [-1, 1]
-        x = (shared - self.center) / self.half
+        x = (value - self.center) / self.half
         # (3) h_j = f(sum_i w_ji x_i + b_j)
         a = self.weights @ x + self.bias
         # (4) x~_k = sum_j beta_jk h_j
-        together = self.output @ f(a) + self.offset
-        # x~_k once more with x_k alone exchanged: trusted for measured, or measured for doubted
-        exchanged = jnp.where(replaced, value, trusted)
-        a_k = a + (self.weights * ((exchanged - shared) / self.half)).T
-        alone = (self.output * f(a_k)).sum(axis=1) + self.offset
-        copy, stand_in = jnp.where(replaced, alone, together), jnp.where(replaced, together, alone)
+        copy = self.output @ f(a) + self.offset
+        # The same for C samples, in the k-th of which x_k is what it was when last trusted.
+        change = (trusted - value) / self.half
+        exchanged = x + jnp.diag(change)
+        copies = f(a + change[:, None] * self.weights.T) @ self.output.T + self.offset
         residual = Residual(
             time=sample.time,
-            value=jnp.where(self.watched, value - self.center - copy * self.half, 0.0),
+            value=jnp.where(self.watched, (x - copy) * self.half, 0.0),
             cov=self.cov,
             measured=value,
-            expected=jnp.where(self.watched, stand_in * self.half + self.center, trusted),
+            expected=jnp.where(self.watched, jnp.diagonal(copies) * self.half + self.center, trusted),
             noise=jnp.diagonal(self.cov),
             valid=sample.fresh & self.watched,
             born=sample.born,
+            extra=jnp.where(self.watched, (exchanged - copies) * self.half, 0.0),
         )
-        return residual, _Work(state, value, sample.fresh, sample.time)
+        return residual, _Work(value, trusted)
 
-    def update(self, pending: _Work, trust: Trust) -> _Inputs:
-        inputs, value, fresh, time = pending
-        return _Inputs(
-            trusted=jnp.where(trust.measured, value, inputs.trusted),
-            when=jnp.where(trust.measured, time, inputs.when),
-            doubted=jnp.where(fresh, ~trust.measured, inputs.doubted),
-        )
+    def update(self, pending: _Work, trust: Trust) -> Float[Array, " C"]:
+        return jnp.where(trust.measured, pending.value, pending.trusted)

@@ -1,0 +1,39 @@
+"""Norm of the residual, blamed on the channel whose exchange makes it go away."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from sensorfault.types import Residual, Score, Trust
+
+
+class Exchange(eqx.Module):
+    """||e|| with e = residual / scale, over the valid channels. Min et al. 2021, equations (5) and (9).
+
+    Needs `residual.extra[k]`, the residual left when channel k is exchanged for a trusted value. Blame is the share of
+    the squared norm that the exchange takes away: a network smears a fault over its neighbours, so the largest residual
+    is not always the culprit's. Once a channel is out, the others are judged by what is left without it.
+    """
+
+    scale: Float[Array, " C"]  # [SI]
+
+    def init(self) -> tuple[()]:
+        return ()
+
+    def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
+        valid = residual.valid
+        square = jnp.where(valid, (residual.value / self.scale) ** 2, 0.0)
+        without = jnp.where(valid, (residual.extra / self.scale) ** 2, 0.0)  # [k, channel]
+        out = residual.out
+        total = jnp.where(out.any(), jnp.where(out, without.sum(axis=1), jnp.inf).min(), square.sum())
+        taken = jnp.where(valid, jnp.maximum(total - without.sum(axis=1), 0.0), 0.0)
+        score = Score(
+            value=jnp.sqrt(total)[None],
+            valid=valid.any()[None],
+            covers=valid[None],
+            blame=(taken / jnp.where(total > 0, total, 1.0))[None],
+        )
+        return score, ()
+
+    def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
+        return ()
