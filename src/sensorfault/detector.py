@@ -11,7 +11,7 @@ from sensorfault.logs.table import Log
 from sensorfault.model import Model
 from sensorfault.replay import Progress, Replayed, replay_log
 from sensorfault.run import Now, Stepper
-from sensorfault.tracker import QUIET_S, Row, Tracker, Watch
+from sensorfault.tracker import QUIET_S, Tracker, Watch
 from sensorfault.types import FAULT
 
 
@@ -64,30 +64,24 @@ class Live:
         """Judge one sample: `time` [s], rising; `value` (C,) in SI and in the model's order, NaN for what is absent.
 
         `fresh` (C,) marks new measurements; left out, a held sensor is new when one of its channels has changed.
+
+        Raises:
+            ValueError: time did not rise, or the number of values is not that of the model's channels.
         """
+        if len(value) != len(self._fresh):
+            width = len(self._fresh)
+            raise ValueError(f"live: {len(value)} values for {width} channels; push one for each, NaN if absent.")
+        if not (self._time is None or time > self._time):
+            raise ValueError(f"live: time went from {self._time} to {time} s; push samples in order, each once.")
         if fresh is None:
             fresh = self._fresh if not self._held else self._changed(np.asarray(value, float))
-        time = float(time)
         now = self._step.push(time, value, fresh)
-        gap_s, self._time = (time - self._time if self._time is not None else 0.0), time
+        gap_s, self._time = (0.0 if self._time is None else float(time - self._time)), float(time)
         # A row without a fault or a silence, while no event is open, changes nothing in the tracker.
         silent = (now.silence > self._silent_after).any()
         if now.sample == FAULT or silent or not self._begun or self._tracker.busy():
             self._begun = True
-            self.events += self._tracker.push(
-                Row(
-                    time,
-                    gap_s,
-                    now.channel,
-                    now.sample,
-                    now.score,
-                    now.limit,
-                    np.asarray(value, float),
-                    now.residual,
-                    now.valid,
-                    now.silence,
-                )
-            )
+            self.events += self._tracker.push(self._time, gap_s, np.asarray(value, float), now)
         return now
 
     def open(self) -> list[Event]:
@@ -116,25 +110,24 @@ def _watch(model: Model) -> Watch:
 def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
     tracker = Tracker(_watch(model))
     score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
-    channel, sample = np.asarray(told.channel), np.asarray(told.sample)
-    residual, valid, silence = (np.asarray(x) for x in (told.residual, told.valid, told.silence))
+    columns = (
+        told.channel,
+        told.sensor,
+        told.sample,
+        score,
+        limit,
+        told.value,
+        told.residual,
+        told.valid,
+        told.silence,
+    )
+    arrays = [np.asarray(column) for column in columns]
     gap_s = np.diff(log.time, prepend=log.time[:1])
+    marked = (np.asarray(told.sample) == FAULT) | (np.asarray(told.silence) > model.silent_after_s).any(axis=1)
     ended: list[Event] = []
-    for i in _interesting(log.time, (sample == FAULT) | (silence > model.silent_after_s).any(axis=1)):
-        ended += tracker.push(
-            Row(
-                float(log.time[i]),
-                float(gap_s[i]),
-                channel[i],
-                int(sample[i]),
-                score[i],
-                limit[i],
-                log.value[i],
-                residual[i],
-                valid[i],
-                silence[i],
-            )
-        )
+    for i in _interesting(log.time, marked):
+        now = Now(*(array[i] for array in arrays))
+        ended += tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
     return sorted(ended + tracker.open(), key=lambda event: event.start_s)
 
 

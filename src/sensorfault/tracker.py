@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from jaxtyping import Bool, Float, Int8
+from jaxtyping import Float
 
 from sensorfault.events import Event
 from sensorfault.kind import Shape
+from sensorfault.run import Now
 from sensorfault.types import FAULT
 
 QUIET_S = 2.0  # alarms of one channel closer than this are one event
@@ -26,22 +27,6 @@ class Watch:
 
 
 @dataclass
-class Row:
-    """One sample as the tracker takes it."""
-
-    time: float
-    gap_s: float  # since the sample before
-    verdict: Int8[np.ndarray, " C"]
-    sample: int
-    score: Float[np.ndarray, " K"]  # NaN where there was nothing to test
-    limit: Float[np.ndarray, " K"]
-    measured: Float[np.ndarray, " C"]
-    residual: Float[np.ndarray, " C"]
-    valid: Bool[np.ndarray, " C"]
-    silence: Float[np.ndarray, " C"]
-
-
-@dataclass
 class _Open:
     start_s: float
     last_s: float
@@ -52,7 +37,7 @@ class _Open:
 
 
 class Tracker:
-    """Turns one row after the other into events. Works on the rows that matter only, so a healthy one costs little."""
+    """Turns one row after the other into events. A healthy row while nothing is open changes nothing."""
 
     def __init__(self, watch: Watch) -> None:
         self._watch = watch
@@ -62,11 +47,14 @@ class Tracker:
         sensors = dict.fromkeys(watch.sensor)
         self._of = {s: [c for c, owner in enumerate(watch.sensor) if owner == s] for s in sensors}
 
-    def push(self, row: Row) -> list[Event]:
-        """The events that this sample brought to an end."""
+    def push(self, time: float, gap_s: float, measured: Float[np.ndarray, " C"], now: Now) -> list[Event]:
+        """The events that this sample brought to an end.
+
+        `time` [s]; `gap_s` since the sample before; `measured` as it came [SI]; `now` what the monitor said of it.
+        """
         if self._first is None:
-            self._first = row.time
-        return self._faults(row) + self._silences(row)
+            self._first = time
+        return self._faults(time, measured, now) + self._silences(time, gap_s, now.silence)
 
     def open(self) -> list[Event]:
         """What is still going on: `end_s` is None."""
@@ -78,21 +66,21 @@ class Tracker:
         """Whether an event is open, so that the next row matters whatever its verdict."""
         return bool(self._open or self._silent)
 
-    def _faults(self, row: Row) -> list[Event]:
-        over = {c: one for c, one in self._open.items() if row.time - one.last_s > QUIET_S}
+    def _faults(self, time: float, measured: Float[np.ndarray, " C"], now: Now) -> list[Event]:
+        over = {c: one for c, one in self._open.items() if time - one.last_s > QUIET_S}
         for c in over:
             del self._open[c]
-        accused: list[int | None] = list(np.flatnonzero(row.verdict == FAULT).tolist())
-        if row.sample == FAULT and not accused:
+        accused: list[int | None] = list(np.flatnonzero(now.channel == FAULT).tolist())
+        if now.sample == FAULT and not accused:
             accused = [None]
         for c in accused:
-            one = self._open.setdefault(c, _Open(row.time, row.time))
-            one.last_s = row.time
-            self._peak(one, row)
+            one = self._open.setdefault(c, _Open(time, time))
+            one.last_s = time
+            self._peak(one, now)
         for c, one in self._open.items():
-            if c is None or not row.valid[c]:
+            if c is None or not now.valid[c]:
                 continue
-            one.since.append((row.time, float(row.measured[c]), float(row.residual[c])))
+            one.since.append((time, float(measured[c]), float(now.residual[c])))
             if c in accused:
                 one.shape.take(one.since)
                 one.since.clear()
@@ -111,13 +99,13 @@ class Tracker:
             told.append(replace(worst, start_s=start_s, channel=None))
         return told
 
-    def _peak(self, one: _Open, row: Row) -> None:
+    def _peak(self, one: _Open, now: Now) -> None:
         with np.errstate(divide="ignore", invalid="ignore"):
-            excess = np.where(row.score > row.limit, row.score / np.maximum(row.limit, 1e-300), -np.inf)
+            excess = np.where(now.score > now.limit, now.score / np.maximum(now.limit, 1e-300), -np.inf)
         k = int(np.argmax(excess))
         old = one.score / max(one.limit, 1e-300) if np.isfinite(one.score) else -np.inf
         if excess[k] > old:
-            one.score, one.limit = float(row.score[k]), float(row.limit[k])
+            one.score, one.limit = float(now.score[k]), float(now.limit[k])
 
     def _fault(self, c: int | None, one: _Open, end_s: float | None) -> Event:
         watch = self._watch
@@ -126,32 +114,32 @@ class Tracker:
         score, limit = (x if np.isfinite(x) else None for x in (one.score, one.limit))
         return Event(one.start_s, end_s, "sensor", sensor, channel, kind, score, limit, watch.method)
 
-    def _silences(self, row: Row) -> list[Event]:
+    def _silences(self, time: float, gap_s: float, silence: Float[np.ndarray, " C"]) -> list[Event]:
         """A sensor is silent when all its channels are; a channel, when its sensor still speaks."""
         assert self._first is not None
-        since_first = row.time - self._first
+        since_first = time - self._first
         # What spoke at the last tick is not silent because no tick came since.
-        silence = np.where(row.silence <= row.gap_s, 0.0, np.minimum(row.silence, since_first))
+        silence = np.where(silence <= gap_s, 0.0, np.minimum(silence, since_first))
         silent = silence > self._watch.silent_after_s
         missing: dict[tuple[str, str | None], tuple[float, float]] = {}
         if silent.any():
             for sensor, channels in self._of.items():
                 if silent[channels].all():
-                    missing[sensor, None] = self._since(row.time, channels, silence)
+                    missing[sensor, None] = self._since(time, channels, silence)
                 else:
                     for c in channels:
                         if silent[c]:
-                            missing[sensor, self._watch.channel[c]] = self._since(row.time, [c], silence)
+                            missing[sensor, self._watch.channel[c]] = self._since(time, [c], silence)
         ended = []
         for name in [name for name in self._silent if name not in missing]:
             one = self._silent.pop(name)
             ended.append(self._miss(name, one, one.last_s))
         for name, (since, allowed) in missing.items():
-            one = self._silent.setdefault(name, _Open(since, row.time, limit=allowed))
-            one.last_s, one.score = row.time, row.time - one.start_s
+            one = self._silent.setdefault(name, _Open(since, time, limit=allowed))
+            one.last_s, one.score = time, time - one.start_s
         longest = max(GAP_S, float(self._watch.silent_after_s.max()))
-        if row.gap_s > longest:
-            gap = row.time - row.gap_s, row.time, "sensor", None, None, "miss", row.gap_s, longest, self._watch.method
+        if gap_s > longest:
+            gap = time - gap_s, time, "sensor", None, None, "miss", gap_s, longest, self._watch.method
             ended.append(Event(*gap))
         return ended
 

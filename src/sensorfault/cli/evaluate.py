@@ -124,7 +124,7 @@ def _show_campaign(log: "Log", done: "Campaign", json_path: str | None) -> None:
     ]
     show.table(f"{log.name} with injected faults", columns, rows, json_path != "-")
     show.say(
-        "Magnitudes of short, bias and noise are channel sigmas, of drift sigmas a second, of scale factors, of delay s. "
+        "Magnitude: of short, bias and noise channel sigmas, of drift sigmas a second, of scale a factor, of delay s. "
         "Chance: an alarm in as long a window with nothing injected. Error left: the stand-in's, of the faulty value's."
     )
     show.say(_alarms(done.untouched))

@@ -46,7 +46,7 @@ def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], ans
     for row in rows:
         drawn.add_row(*(Text(cell) for cell in row))
     stream = sys.stdout if answer else sys.stderr
-    width = None if stream.isatty() else 120
+    width = None if stream.isatty() else 200
     Console(file=stream, width=width, highlight=False).print(drawn)
 
 

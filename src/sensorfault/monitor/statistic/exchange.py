@@ -24,7 +24,7 @@ class Exchange(eqx.Module):
         valid = residual.valid
         square = jnp.where(valid, (residual.value / self.scale) ** 2, 0.0)
         without = jnp.where(valid, (residual.extra / self.scale) ** 2, 0.0)  # [k, channel]
-        out = residual.out
+        out = jnp.asarray(residual.out)
         total = jnp.where(out.any(), jnp.where(out, without.sum(axis=1), jnp.inf).min(), square.sum())
         taken = jnp.where(valid, jnp.maximum(total - without.sum(axis=1), 0.0), 0.0)
         score = Score(
