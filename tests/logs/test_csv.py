@@ -24,6 +24,7 @@ def expect(
     log = read(path, VehicleFile.parse(VEHICLE.format(time=time, a=a, b=b)))
     np.testing.assert_allclose(log.time, [row[0] - rows[0][0] for row in rows], atol=1e-12)
     np.testing.assert_array_equal(log.value, [row[1:] for row in rows])
+    assert not any("left out" in note for note in log.notes)
 
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t", " ", "   ", "|"])
@@ -35,6 +36,14 @@ def test_every_delimiter_with_and_without_header(tmp_path: Path, delimiter: str,
     path = tmp_path / "log.csv"
     path.write_text(end.join(lines) + end, newline="")
     expect(path, ("time", "a", "b") if header else ("c1", "c2", "c3"))
+
+
+@pytest.mark.parametrize("header", ["time;a;b\n", ""])
+def test_decimal_commas_everywhere_are_no_delimiters(tmp_path: Path, header: str) -> None:
+    rows = [(k + 0.5, k + 0.25, k + 0.75) for k in range(30)]
+    path = tmp_path / "log.csv"
+    path.write_text(header + "\n".join(";".join(str(c).replace(".", ",") for c in row) for row in rows))
+    expect(path, ("time", "a", "b") if header else ("c1", "c2", "c3"), rows)
 
 
 def test_decimal_commas(tmp_path: Path) -> None:
@@ -61,6 +70,13 @@ def test_quotes_blanks_and_doubled_names(tmp_path: Path) -> None:
     expect(path, ("time", "a", "a_2"), [(0, 1, 2), (0.5, 3, 4), (1, 5, 6)])
 
 
+@pytest.mark.parametrize("header", ["time,a,b\n", ""])
+def test_a_byte_order_mark_is_no_part_of_the_first_cell(tmp_path: Path, header: str) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(header + "\n".join(",".join(str(cell) for cell in row) for row in ROWS), encoding="utf-8-sig")
+    expect(path, ("time", "a", "b") if header else ("c1", "c2", "c3"))
+
+
 def test_a_line_cut_off_at_either_end_is_left_out_and_said(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     whole = [f"{k / 10},{k},{k + 1}" for k in range(20)]
@@ -85,18 +101,20 @@ def test_nanoseconds_since_1970_keep_every_digit(tmp_path: Path) -> None:
     log = read(
         path, VehicleFile.parse('[file.log]\ntime = "stamp"\nunit = "ns"\n[sensor.s.channel]\na = { column = "a" }')
     )
-    np.testing.assert_allclose(log.time, [0.0, 0.100000001, 0.200000007], atol=1e-12)
+    np.testing.assert_allclose(log.time, [0.0, 0.100000001, 0.200000007], rtol=0, atol=1e-12)
     assert log.epoch_s == pytest.approx(first / 1e9, abs=1e-6)
 
 
-@pytest.mark.parametrize("late", ["7", "7.5", "1e3", " 7 ", "NA", "nan", ""])
+@pytest.mark.parametrize("late", ["7", "7.5", "1e3", " 7 ", "NA", "nan", "", "null", "N/A"])
 def test_cells_unlike_the_first_thousand(tmp_path: Path, late: str) -> None:
     path = tmp_path / "log.csv"
     rows = [[str(k), str(k % 7)] for k in range(3000)]
     rows[2500][1] = late
     path.write_text("time,a\n" + "\n".join(",".join(row) for row in rows) + "\n")
     log = read(path, VehicleFile.parse('[file.log]\ntime = "time"\n[sensor.s.channel]\na = { column = "a" }'))
-    want = np.array([float(row[1]) if row[1].strip() not in ("NA", "nan", "") else np.nan for row in rows])
+    want = np.array(
+        [float(row[1]) if row[1].strip() not in ("NA", "nan", "", "null", "N/A") else np.nan for row in rows]
+    )
     np.testing.assert_array_equal(log.value[:, 0], want)
     np.testing.assert_array_equal(log.fresh[:, 0], np.isfinite(want))
 

@@ -104,6 +104,12 @@ def test_a_file_without_names(tmp_path: Path, gravity: float, unit: str, gyro_fi
     round_trip(vehicle)
 
 
+def test_three_columns_of_about_one_are_no_accelerometer_unless_their_length_is_steady(tmp_path: Path) -> None:
+    noise = RANDOM.normal(size=(ROWS, 3)) * 0.65
+    table = {f"a{i}": column for i, column in enumerate(noise.T)} | {"t": TIME}
+    assert "accelerometer" not in described(guess(save(tmp_path, table, "bare.csv")))
+
+
 def test_files_of_one_drive_keep_their_sensors_apart(tmp_path: Path) -> None:
     stamp = (1_734_501_485_000_000_000 + np.round(TIME * 1e9)).astype(np.int64)
     for anchor in (3, 5):

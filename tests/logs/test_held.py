@@ -50,9 +50,10 @@ def test_what_only_repeats_now_and_then_is_no_hold() -> None:
     random = np.random.default_rng(2)
     noise = random.normal(size=(4000, 3))
     coarse = np.round(random.normal(size=(4000, 1)) * 0.5)  # repeats half its rows, for one row or for six
+    slow = np.cumsum(random.random((4000, 1)) < 0.2, axis=0).astype(float)  # changes by chance, one row in five
     still = noise.copy()
     still[:3000] = 0.0  # an airspeed on the ground
-    for value in (noise, coarse, still, np.zeros((100, 1))):
+    for value in (noise, coarse, slow, still, np.zeros((100, 1))):
         assert not looks_held(value)
 
 

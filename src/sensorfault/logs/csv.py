@@ -5,11 +5,10 @@ from pathlib import Path
 
 import polars as pl
 
-from sensorfault.logs.dialect import Dialect, is_number, missing, sniff
+from sensorfault.logs.dialect import MISSING, Dialect, is_number, sniff
 from sensorfault.logs.source import Source
 from sensorfault.logs.table import LogError
 
-MISSING = ["NA", "N/A", "NULL", "null", "None", "none", "-", ""]
 _PADDING = ' \t\r"'
 _SAMPLE_ROWS = 1000
 _EXACT_IN_FLOAT = 2**53
@@ -60,8 +59,7 @@ def _parse(
         schema_overrides=dict(zip(dialect.names, dtypes, strict=True)),
         comment_prefix=dialect.comment,
         decimal_comma=dialect.decimal_comma and dialect.delimiter is not None,
-        null_values=MISSING,
-        truncate_ragged_lines=True,
+        null_values=list(MISSING),
         encoding="utf8-lossy",
         n_rows=rows,
         glob=False,
@@ -76,22 +74,33 @@ def _dtypes(content: Path | bytes, dialect: Dialect, skip: int) -> list[type[pl.
 
 def _dtype(column: pl.Series) -> type[pl.DataType]:
     cells = [cell.strip(_PADDING) for cell in column.drop_nulls()]
-    cells = [cell for cell in cells if not missing(cell)]
+    cells = [cell for cell in cells if cell not in MISSING]
     if not all(is_number(cell) for cell in cells):
         return pl.String
-    whole = all(re.fullmatch(r"[+-]?\d{1,18}", cell) for cell in cells)
+    whole = all(re.fullmatch(r"[+-]?\d{1,19}", cell) for cell in cells)
     return pl.Int64 if cells and whole and any(abs(int(cell)) > _EXACT_IN_FLOAT for cell in cells) else pl.Float64
 
 
 def _parse_text(path: Path, content: Path | bytes, dialect: Dialect, skip: int) -> pl.DataFrame:
     try:
         return _parse(content, dialect, skip, [pl.String] * len(dialect.names))
-    except pl.exceptions.PolarsError as error:
-        reason = str(error).splitlines()[0]
-        raise LogError(
-            f"{path}: the lines do not make a table of {len(dialect.names)} columns ({reason}); "
-            "give every line the same number of cells."
-        ) from None
+    except pl.exceptions.PolarsError:
+        raise LogError(f"{path}: {_odd_line(path, dialect)}; mend that line, or take it out.") from None
+
+
+def _odd_line(path: Path, dialect: Dialect) -> str:
+    """What is wrong with the first line that does not fit; looked for only once reading has failed."""
+    width = len(dialect.names)
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for number, line in enumerate(file, 1):
+            if number <= dialect.skip or (dialect.comment and line.startswith(dialect.comment)):
+                continue
+            if line.count('"') % 2:
+                return f"line {number} has a quote that does not close"
+            cells = len(dialect.split(line))
+            if cells > width:
+                return f"line {number} has {cells} cells where the others have {width}"
+    return f"some line does not fit a table of {width} columns"
 
 
 def _numbers(frame: pl.DataFrame) -> pl.DataFrame:

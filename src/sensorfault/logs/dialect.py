@@ -11,7 +11,7 @@ _HEAD_BYTES = 1 << 16
 _COMMENT = b"#%"
 _DELIMITERS = (",", ";", "\t", "|")
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-_MISSING = frozenset({"", "NA", "N/A", "NULL", "null", "None", "none", "-"})
+MISSING = ("", "NA", "N/A", "NULL", "null", "None", "none", "-")  # cells that say that there is no value
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,6 @@ class Dialect:
         return [cell.strip().strip('"') for cell in line.strip().split(self.delimiter)]
 
 
-def missing(cell: str) -> bool:
-    """Whether the cell says that there is no value."""
-    return cell in _MISSING
-
-
 def is_number(cell: str) -> bool:
     """Whether the cell reads as a number; a decimal comma is one too."""
     return _NUMBER.fullmatch(cell) is not None
@@ -53,7 +48,7 @@ def sniff(path: Path) -> Dialect:
         raise LogError(f"{path}: the file is empty; name a log with a header and rows.")
     if b"\0" in head or sum(byte < 9 or 13 < byte < 32 for byte in head) > len(head) // 100:
         raise LogError(f"{path}: this is not text although its name says so; export the log as CSV or Parquet.")
-    lines = head.decode("utf-8", "replace").splitlines()
+    lines = head.decode("utf-8-sig", "replace").splitlines()
     if len(head) == _HEAD_BYTES and len(lines) > 1:
         lines.pop()  # cut by us, not by the file
     comment = next((line.lstrip()[0] for line in lines if line.lstrip()[:1].encode() in (b"#", b"%")), None)
@@ -72,14 +67,25 @@ def sniff(path: Path) -> Dialect:
 
 
 def _delimiter(lines: list[str]) -> str | None:
-    """The delimiter that splits most lines into the same number of cells, at least two."""
-    best, score = None, 0
-    for delimiter in (*_DELIMITERS, None):
-        width, votes = Counter(len(line.split(delimiter)) for line in lines[:200]).most_common(1)[0]
-        # A later candidate must be clearly better: "2024-01-01 10:00,1.5" has a blank in every line too.
-        if width > 1 and votes > 1.2 * score:
-            best, score = delimiter, votes
-    return best
+    """The delimiter that splits most lines into the same number of cells, at least two.
+
+    Of equals, the one whose cells are numbers: "1,5;2,5" falls into even pieces at either. Blanks must be clearly
+    better: "2024-01-01 10:00,1.5" has one in every line too.
+    """
+    lines = lines[:200]
+    ranked = [(*_evenness(lines, delimiter), delimiter) for delimiter in _DELIMITERS]
+    votes, _, best = max(ranked, key=lambda rank: rank[:2])
+    blanks, _ = _evenness(lines, None)
+    return None if blanks > 1.2 * votes else best
+
+
+def _evenness(lines: list[str], delimiter: str | None) -> tuple[int, float]:
+    """How many lines fall into the usual number of cells, and the share of numbers among their cells."""
+    rows = [[cell.strip() for cell in line.split(delimiter)] for line in lines]
+    width, votes = Counter(len(row) for row in rows).most_common(1)[0]
+    if width < 2:
+        return 0, 0.0
+    return votes, sum(is_number(cell) for row in rows for cell in row) / sum(len(row) for row in rows)
 
 
 def _with_header(

@@ -14,7 +14,7 @@ from sensorfault.logs.units import STANDARD_GRAVITY
 from sensorfault.logs.words import Meaning, read_name
 
 _FEW = 16
-_STEADY = 0.3  # relative spread below which three axes have a steady length
+_STEADY = 0.15  # relative spread below which three axes have a steady length
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,8 @@ def guess_time(source: Source) -> tuple[str, str, str]:
     ranked = []
     for i, name in enumerate(source.frame.columns):
         column = source.frame[name]
+        if column.dtype == pl.String and read_name(name).kind == "time" and _mostly_numbers(column):
+            source.column(name)  # says which cell is none
         if column.dtype == pl.String or column.dtype.is_temporal():
             share, unit = _calendar(column)
         elif column.dtype.is_numeric():
@@ -49,6 +51,10 @@ def guess_time(source: Source) -> tuple[str, str, str]:
     return name, unit, f"{why}; unit {'as Unix time' if unix else 'by name and usual interval'}"
 
 
+def _mostly_numbers(column: pl.Series) -> bool:
+    return column.str.strip_chars().cast(pl.Float64, strict=False).null_count() < len(column) / 2
+
+
 def _rising(column: pl.Series) -> float:
     step = np.diff(column.cast(pl.Float64).drop_nulls().to_numpy())
     return float(np.mean(step > 0)) if len(step) else 0.0
@@ -59,7 +65,8 @@ def _calendar(column: pl.Series) -> tuple[float, str]:
     stamp = column
     if column.dtype == pl.String:
         head = column.drop_nulls().head(100)
-        if not len(head) or not head.str.contains(r"^\s*\d{4}-\d{2}-\d{2}[T ]\d").all():
+        dated = head.str.contains(r"^\s*\d{4}-\d{2}-\d{2}[T ]\d").sum()
+        if dated <= len(head) / 2:
             return 0.0, ""
         stamp = column.str.strip_chars().str.to_datetime(time_unit="us", strict=False, time_zone="UTC")
     return _rising(stamp.dt.epoch("us")), "iso8601"

@@ -70,6 +70,10 @@ class Log:
                 f"{self.fresh.shape} fresh marks and {len(self.channels)} channels; give one of each a row or column."
             )
 
+    def __repr__(self) -> str:
+        sensors = ", ".join(sensor.name for sensor in self.sensors)
+        return f"Log({self.name!r}: {len(self)} rows in {self.duration_s:.1f} s, {sensors})"
+
     def __len__(self) -> int:
         return len(self.time)
 
