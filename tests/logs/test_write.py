@@ -55,6 +55,7 @@ def test_what_is_written_reads_back_the_same(
     vehicle = write(log, tmp_path / f"faulty.{suffix}")
     assert vehicle == tmp_path / "faulty.vehicle.toml"
     same(log, read(tmp_path / f"faulty.{suffix}"))
+    same(log, read(tmp_path))
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])

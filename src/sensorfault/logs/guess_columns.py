@@ -59,6 +59,8 @@ def _no_measurement(column: Column) -> str:
         return "holds no value at all"
     if (known == known[0]).all():
         return "constant"
+    if column.meaning.kind == "temperature":
+        return "a temperature, no measurement of motion"
     if not column.meaning.kind and (known == np.round(known)).all():
         if len(np.unique(known)) <= _FEW:
             return "few whole numbers: a state or a counter"

@@ -22,11 +22,10 @@ _UNWATCHED = {
     "depth": "a depth is not stationary: only its silence is noticed",
     "heading": "an angle that wraps: only its silence is noticed",
     "quaternion": "a quaternion is not stationary: only its silence is noticed",
-    "temperature": "a temperature creeps: only its silence is noticed",
 }
 _USUAL_UNIT = {
     "magnetometer": "uT", "velocity": "m/s", "airspeed": "m/s", "local_position": "m", "range": "m", "depth": "m",
-    "barometer": "hPa", "temperature": "degC",
+    "barometer": "hPa",
 }  # fmt: skip
 _IN_GNSS = {
     "speed": "gnss",
@@ -36,7 +35,7 @@ _IN_GNSS = {
     "height": "gnss_position",
 }
 _NO_VALUE = -1.0  # a usual mark for "no value" among lengths and the like
-_WANDERS = 3.0
+_WANDERS = 3.0  # halves whose levels differ by more than so many spreads are of something that wanders
 
 
 def guess_sensors(source: Source, columns: Sequence[Column], clock: Clock) -> list[SensorEntry]:
@@ -153,12 +152,12 @@ def _epoch(source: Source, value: np.ndarray, clock: Clock) -> str | None:
         reading = column.cast(pl.Float64).fill_null(np.nan).to_numpy()[clock.rows]
         ratio = float(changes(reading).sum()) / max(moved, 1)
         rising = np.nanmin(np.diff(reading), initial=0.0) >= 0
-        if rising and 0.95 < ratio < 2.0 and (best is None or ratio < best[0]) and not looks_new(reading):
+        if rising and 0.95 < ratio < 2.0 and (best is None or ratio < best[0]) and not _of_the_rows(reading):
             best = ratio, name
     return best[1] if best else None
 
 
-def looks_new(reading: np.ndarray) -> bool:
+def _of_the_rows(reading: np.ndarray) -> bool:
     """Whether a column changes in nearly every row: a clock of the rows, not of the measurements."""
     return float(changes(reading).mean()) > 0.9
 

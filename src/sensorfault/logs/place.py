@@ -44,16 +44,14 @@ def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> Vehic
     if vehicle is not None:
         return VehicleFile.read(vehicle)
     files = files_of(path)
-    if isinstance(path, str | Path) and Path(path).is_dir():
-        beside = Path(path) / VEHICLE
-        return VehicleFile.read(beside) if beside.is_file() else None
-    own = files[0].with_suffix(".vehicle.toml")
+    own, beside = files[0].with_suffix(f".{VEHICLE}"), files[0].parent / VEHICLE
     if len(files) == 1 and own.is_file():
         return VehicleFile.read(own)
-    beside = files[0].parent / VEHICLE
     if not beside.is_file():
         return None
     found = VehicleFile.read(beside)
+    if isinstance(path, str | Path) and Path(path).is_dir():
+        return found
     names = {file.name for file in files}
     return found if all(entry.path is None or Path(entry.path).name in names for entry in found.files) else None
 

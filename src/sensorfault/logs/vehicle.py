@@ -21,6 +21,7 @@ period_s = 0.1             # optional: the usual time between measurements, wher
 [sensor.gnss.channel]
 speed = { column = "speed", unit = "km/h" }
 range = { column = "range", unit = "m", missing = -1 }    # -1 stands for no value
+far = { column = "far", unit = "m", epoch = "far_time" }  # a channel that arrives at its own times
 """
 
 import tomllib

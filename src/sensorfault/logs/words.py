@@ -71,7 +71,7 @@ class Meaning:
 def read_name(column: str) -> Meaning:
     """What a column's name says."""
     plain, unit = _split_unit(column)
-    name = "_".join(_tokens(plain))
+    name = "_".join(_tokens(plain)) or re.sub(r"\W+", "_", column).lower()
     bare = name
     for ending, written in _UNIT_ENDINGS:
         if name.endswith("_" + ending):

@@ -10,6 +10,7 @@ from jaxtyping import Bool
 
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows
+from sensorfault.logs.place import VEHICLE
 from sensorfault.logs.table import Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -34,7 +35,7 @@ def write(log: Log, path: str | Path) -> Path:
     writer = writers.get(path.suffix.lower())
     if writer is None:
         raise LogError(f"{path}: a log is written as {' or '.join(writers)}, not as '{path.suffix}'; change the name.")
-    beside = path.with_suffix(".vehicle.toml")
+    beside = path.with_suffix(f".{VEHICLE}")
     text = vehicle.to_toml()
     _whole(path, writer)
     _whole(beside, lambda file: file.write_text(text, encoding="utf-8"))
