@@ -5,6 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sensorfault.logs import LogError, VehicleFile, read
+from sensorfault.logs import vehicle as vehicle_module
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.units import UNITS
 
@@ -134,3 +135,10 @@ def test_a_described_file_that_is_missing(tmp_path: Path) -> None:
     vehicle = VehicleFile.parse(GOOD.replace("time", 'path = "c.csv"\ntime'))
     with pytest.raises(LogError, match=r"path = 'c.csv' is not among a.csv, b.csv"):
         read(tmp_path, vehicle)
+
+
+def test_the_description_of_the_format_is_of_the_format() -> None:
+    example = (vehicle_module.__doc__ or "").split("\n\n", 1)[1]
+    vehicle = VehicleFile.parse(example)
+    assert VehicleFile.parse(vehicle.to_toml()) == vehicle
+    assert vehicle.sensors[0].channels[2].epoch == "far_time"
