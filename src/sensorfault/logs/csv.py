@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Literal
 
 import polars as pl
 
@@ -12,6 +13,8 @@ from sensorfault.logs.table import LogError
 _PADDING = ' \t\r"'
 _SAMPLE_ROWS = 1000
 _EXACT_IN_FLOAT = 2**53
+Holds = Literal["text", "whole", "number"]  # what a column's cells are; whole: a float would round them
+_DTYPES = {"text": pl.String(), "whole": pl.Int64(), "number": pl.Float64()}
 
 
 def read_csv(path: Path) -> Source:
@@ -23,7 +26,7 @@ def read_csv(path: Path) -> Source:
     dialect = sniff(path)
     content, skip = _content(path, dialect)
     try:
-        frame = _parse(content, dialect, skip, _dtypes(content, dialect, skip))
+        frame = _parse(content, dialect, skip, _holds(content, dialect, skip))
     except pl.exceptions.PolarsError:
         # Some cell is not what the first rows promised: read all as text and keep what is not a number as it is.
         frame = _numbers(_parse_text(path, content, dialect, skip))
@@ -48,7 +51,7 @@ def _content(path: Path, dialect: Dialect) -> tuple[Path | bytes, int]:
 
 
 def _parse(
-    content: Path | bytes, dialect: Dialect, skip: int, dtypes: list[type[pl.DataType]], rows: int | None = None
+    content: Path | bytes, dialect: Dialect, skip: int, holds: list[Holds], rows: int | None = None
 ) -> pl.DataFrame:
     return pl.read_csv(
         content,
@@ -56,7 +59,7 @@ def _parse(
         skip_lines=skip,
         separator=dialect.delimiter or ",",
         new_columns=list(dialect.names),
-        schema_overrides=dict(zip(dialect.names, dtypes, strict=True)),
+        schema_overrides={name: _DTYPES[cells] for name, cells in zip(dialect.names, holds, strict=True)},
         comment_prefix=dialect.comment,
         decimal_comma=dialect.decimal_comma and dialect.delimiter is not None,
         null_values=list(MISSING),
@@ -66,24 +69,24 @@ def _parse(
     )
 
 
-def _dtypes(content: Path | bytes, dialect: Dialect, skip: int) -> list[type[pl.DataType]]:
+def _holds(content: Path | bytes, dialect: Dialect, skip: int) -> list[Holds]:
     """Float for numbers; integers stay integers only where a float would round them (nanoseconds since 1970)."""
-    sample = _parse(content, dialect, skip, [pl.String] * len(dialect.names), _SAMPLE_ROWS)
-    return [_dtype(column) for column in sample]
+    sample = _parse(content, dialect, skip, ["text"] * len(dialect.names), _SAMPLE_ROWS)
+    return [_content_of(column) for column in sample]
 
 
-def _dtype(column: pl.Series) -> type[pl.DataType]:
+def _content_of(column: pl.Series) -> Holds:
     cells = [cell.strip(_PADDING) for cell in column.drop_nulls()]
     cells = [cell for cell in cells if cell not in MISSING]
     if not all(is_number(cell) for cell in cells):
-        return pl.String
+        return "text"
     whole = all(re.fullmatch(r"[+-]?\d{1,19}", cell) for cell in cells)
-    return pl.Int64 if cells and whole and any(abs(int(cell)) > _EXACT_IN_FLOAT for cell in cells) else pl.Float64
+    return "whole" if whole and any(abs(int(cell)) > _EXACT_IN_FLOAT for cell in cells) else "number"
 
 
 def _parse_text(path: Path, content: Path | bytes, dialect: Dialect, skip: int) -> pl.DataFrame:
     try:
-        return _parse(content, dialect, skip, [pl.String] * len(dialect.names))
+        return _parse(content, dialect, skip, ["text"] * len(dialect.names))
     except pl.exceptions.PolarsError:
         raise LogError(f"{path}: {_odd_line(path, dialect)}; mend that line, or take it out.") from None
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -112,12 +112,12 @@ class Log:
             raise LogError(f"{self.name}: no sensor is called '{sensor}'; take one of {known}.")
         return tuple(i for i, c in enumerate(self.channels) if c.sensor == sensor)
 
-    def between(self, start_s: float = -np.inf, end_s: float = np.inf) -> Self:
+    def between(self, start_s: float = -np.inf, end_s: float = np.inf) -> "Log":
         """The rows with start_s <= time < end_s; times stay as they are."""
         rows = slice(*np.searchsorted(self.time, (start_s, end_s)))
         return replace(self, time=self.time[rows], value=self.value[rows], fresh=self.fresh[rows])
 
-    def select(self, paths: Iterable[str]) -> Self:
+    def select(self, paths: Iterable[str]) -> "Log":
         """The same log with only these channels, in this order."""
         columns = [self.index(path) for path in paths]
         kept = {self.channels[i].sensor for i in columns}
