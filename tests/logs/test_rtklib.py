@@ -58,8 +58,8 @@ def test_leap_seconds(day: str, seconds: int) -> None:
 
 
 def test_gps_weeks() -> None:
-    assert unix_from_gps_week(0, 0) == datetime(1980, 1, 6, tzinfo=UTC).timestamp()
-    assert unix_from_gps_week(2374, 243258.5) == START - 18
+    assert unix_from_gps_week(0.0, 0.0) == datetime(1980, 1, 6, tzinfo=UTC).timestamp()
+    assert unix_from_gps_week(2374.0, 243258.5) == START - 18
 
 
 def recording(folder: Path, end: bytes, strip: bool, delay_s: float = 0.004, drift: float = 1e-3) -> np.ndarray:

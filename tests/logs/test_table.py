@@ -53,16 +53,16 @@ def test_shapes_that_do_not_go_together() -> None:
 @pytest.mark.parametrize(
     ("value", "unit", "si", "si_name"),
     [
-        (180, "deg", np.pi, "rad"),
-        (450_000_000, "1e-7deg", np.pi / 4, "rad"),
-        (36, "km/h", 10, "m/s"),
-        (1, "kn", 0.514444444, "m/s"),
-        (2, "g", 19.6133, "m/s^2"),
-        (1013.25, "hPa", 101325, "Pa"),
-        (60, "rpm", 2 * np.pi, "rad/s"),
-        (1, "gauss", 1e-4, "T"),
-        (20, "degC", 20, "degC"),
-        (3, "parsec", 3, "parsec"),
+        (180.0, "deg", np.pi, "rad"),
+        (450_000_000.0, "1e-7deg", np.pi / 4, "rad"),
+        (36.0, "km/h", 10.0, "m/s"),
+        (1.0, "kn", 0.514444444, "m/s"),
+        (2.0, "g", 19.6133, "m/s^2"),
+        (1013.25, "hPa", 101325.0, "Pa"),
+        (60.0, "rpm", 2 * np.pi, "rad/s"),
+        (1.0, "gauss", 1e-4, "T"),
+        (20.0, "degC", 20.0, "degC"),
+        (3.0, "parsec", 3.0, "parsec"),
     ],
 )
 def test_units(value: float, unit: str, si: float, si_name: str) -> None:

@@ -53,7 +53,9 @@ def vehicles(draw: st.DrawFn) -> VehicleFile:
     )
     sensors = draw(st.lists(sensor, min_size=1, max_size=3, unique_by=lambda sensor: sensor.name))
     zero = st.none() | finite
-    return VehicleFile(draw(names), tuple(files), tuple(sensors), draw(zero), draw(zero), draw(st.lists(reasons)))
+    return VehicleFile(
+        draw(names), tuple(files), tuple(sensors), draw(zero), draw(zero), tuple(draw(st.lists(reasons)))
+    )
 
 
 @settings(max_examples=100, deadline=None)

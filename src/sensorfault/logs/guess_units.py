@@ -12,8 +12,8 @@ _FAST_RAD_S = 3.5  # a vehicle that turns faster than this one time in twenty do
 _FAST_M_S = 45.0
 
 
-def acceleration_unit(value: Float[np.ndarray, "T 3"]) -> tuple[str, str]:
-    """By the usual length of the three axes: gravity is 1 g, 9.8 m/s^2 or 1000 mg."""
+def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
+    """By the usual length of the axes together: gravity is 1 g, 9.8 m/s^2 or 1000 mg."""
     length = float(np.nanmedian(np.linalg.norm(value, axis=1)))
     for unit, gravity in (("m/s^2", STANDARD_GRAVITY), ("g", 1.0), ("mg", 1000.0)):
         if 0.8 < length / gravity < 1.25:

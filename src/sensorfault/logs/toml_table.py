@@ -11,7 +11,7 @@ from sensorfault.logs.table import LogError
 class TomlTable:
     """A TOML table that takes no key it does not know."""
 
-    content: Mapping[str, Any]
+    content: Any  # a mapping, or the first use says so
     where: str
     path: str
 
