@@ -105,12 +105,12 @@ class Stepper:
         self._state, restore = ravel_pytree(monitor.init())
         extra, restore_block = ravel_pytree(block)
         self._channels = channels
-        self._row = np.ones(2 + 2 * channels + extra.size)  # [1, time, value, fresh, block]
+        self._row = np.ones(2 + 3 * channels + extra.size)  # [1, time, value, fresh, born, block]
 
         def unpack(row: Array) -> Sample:
-            value, fresh = row[2 : 2 + channels], row[2 + channels : 2 + 2 * channels] > 0
-            none = jnp.zeros(channels, bool)
-            return Sample(row[1], value, fresh | ~none, fresh, none, restore_block(row[2 + 2 * channels :]))
+            value, fresh, born = row[2 : 2 + 3 * channels].reshape(3, channels)
+            there = jnp.ones(channels, bool)
+            return Sample(row[1], value, there, fresh > 0, born > 0, restore_block(row[2 + 3 * channels :]))
 
         def once(flat: Array, row: Array) -> tuple[Array, Array]:
             state, report = monitor.step(restore(flat), unpack(row))
@@ -131,14 +131,24 @@ class Stepper:
         ends = np.cumsum([int(np.prod(one.shape)) for one in told]).tolist()
         self._cuts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True)]
 
-    def push(self, time: float, value: Any, fresh: Any = True, block: Any = None) -> Now:
-        """Judge one sample: `time` [s], `value` (C,) in SI with NaN for what is absent, `fresh` (C,) or one for all."""
+    def push(self, time: float, value: Any, fresh: Any = True, block: Any = (), born: Any = False) -> Now:
+        """Judge one sample: `time` [s], `value` (C,) in SI with NaN for what is absent; `fresh`, `born` (C,) or one.
+
+        Raises:
+            ValueError: another number of values than channels, or a block unlike the example.
+        """
         row, c = self._row, self._channels
+        if np.shape(value) != (c,):
+            raise ValueError(f"push: values of shape {np.shape(value)} for {c} channels; give one each, NaN if absent.")
         row[1] = time
         row[2 : 2 + c] = value
         row[2 + c : 2 + 2 * c] = fresh
-        if block is not None:
-            row[2 + 2 * c :] = np.concatenate([np.ravel(x) for x in jax.tree.leaves(block)])
+        row[2 + 2 * c : 2 + 3 * c] = born
+        tail, parts = row[2 + 3 * c :], [np.ravel(x) for x in jax.tree.leaves(block)]
+        if (size := sum(part.size for part in parts)) != tail.size:
+            raise ValueError(f"push: a block of {size} numbers where the example had {tail.size}; give all of it.")
+        if parts:
+            tail[:] = np.concatenate(parts)
         self._state, told = self._step(self._state, row)
         answer = np.asarray(told)
         channel, sensor, sample, score, limit, filled, residual, valid, silence = (answer[cut] for cut in self._cuts)

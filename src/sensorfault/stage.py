@@ -1,6 +1,6 @@
 """The protocol of every exchangeable part, and the last line of defence around each."""
 
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, runtime_checkable
 
 import jax
 import jax.numpy as jnp
@@ -13,6 +13,7 @@ Told = TypeVar("Told", covariant=True)
 Pending = TypeVar("Pending")
 
 
+@runtime_checkable
 class Stage(Protocol[State, Seen, Told, Pending]):
     """Evaluate first, then update under trust.
 

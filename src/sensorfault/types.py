@@ -65,7 +65,7 @@ class Evidence(NamedTuple):
     """All tests of one sample, branch by branch, as the decision sees them.
 
     `gates[b]`: whether an alarm of branch b may keep this sample out of a filter (a window's alarm may not).
-    `struck`: channels already taken out of this sample, with the accusation standing.
+    `struck`: channels already taken out of this sample, with the accusation standing. `born`: as in Sample.
     """
 
     time: Float[Array, ""]
@@ -73,18 +73,20 @@ class Evidence(NamedTuple):
     limits: tuple[Float[Array, " K"], ...]
     gates: tuple[bool, ...]
     struck: Bool[Array, " C"]
+    born: Bool[Array, " C"]
 
 
 class Accusation(NamedTuple):
     """What a decision says of one sample.
 
-    `named`: faulty. `gated`: named, and by a test that may keep it out of a filter. `size` ranks the accused; it is
-    -inf where this sample's own scores accuse nobody (a verdict that is only held). `tested`: has a verdict at all.
-    `hit`: some test is over its limit, whether or not it can say on whose account.
+    `named`: faulty. `gated`: named, and by a test that may keep it out of a filter. `suspect`: over a limit, whether or
+    not that is a fault yet, so that nothing is learned from it. `size` ranks the accused; it is -inf for all others.
+    `tested`: examined by some test. `hit`: something is wrong, whether or not it can be said on whose account.
     """
 
     named: Bool[Array, " C"]
     gated: Bool[Array, " C"]
+    suspect: Bool[Array, " C"]
     size: Float[Array, " C"]
     tested: Bool[Array, " C"]
     hit: Bool[Array, ""]

@@ -80,9 +80,7 @@ def says(
     branches: list[Branch], owner: tuple[int, ...], *, most=0, hold_s=0.0, decision=None, recovery=None
 ) -> Monitor:
     hold = jnp.full(len(owner), hold_s, float)
-    return Monitor(
-        FromBlock(len(owner)), tuple(branches), decision or Exceed(hold), recovery or Drop(), hold, owner, most
-    )
+    return Monitor(FromBlock(len(owner)), tuple(branches), decision or Exceed(), recovery or Drop(), hold, owner, most)
 
 
 def branch(statistic: Any, limit: float = 1.0, gates: bool = True) -> Branch:

@@ -13,7 +13,7 @@ NAN = np.nan
 
 
 def three_of_five(channels: int, hold_s: float = 0.0):
-    return says([branch(each(channels))], tuple(range(channels)), decision=Persist(jnp.full(channels, hold_s), 3, 5))
+    return says([branch(each(channels))], tuple(range(channels)), decision=Persist(channels, 3, 5), hold_s=hold_s)
 
 
 @pytest.mark.usefixtures("promoting")
@@ -36,7 +36,7 @@ def test_persist_counts_tests_and_not_samples() -> None:
 
 
 @pytest.mark.usefixtures("promoting")
-def test_persist_holds_its_verdict_like_exceed() -> None:
+def test_a_persistent_verdict_is_held_like_any_other() -> None:
     fresh = np.array([1, 1, 1, 0, 0, 0], bool)[:, None]
     told = walk(three_of_five(1, hold_s=2.0), script(np.full((6, 1), 2.0), fresh=fresh))
     np.testing.assert_array_equal(told.channel[:, 0], [OK, OK, FAULT, FAULT, FAULT, UNKNOWN])
@@ -45,7 +45,7 @@ def test_persist_holds_its_verdict_like_exceed() -> None:
 @pytest.mark.usefixtures("promoting")
 def test_persist_counts_who_was_struck_in_this_sample() -> None:
     """Exclusion judges one sample several times; each channel is still counted once."""
-    monitor = says([branch(each(2))], (0, 1), most=2, decision=Persist(jnp.zeros(2), 2, 3))
+    monitor = says([branch(each(2))], (0, 1), most=2, decision=Persist(2, 2, 3))
     told = walk(monitor, script([[2, 0], [2, 3], [0, 3], [0, 0]]))
     np.testing.assert_array_equal(told.channel, [[OK, OK], [FAULT, OK], [FAULT, FAULT], [OK, FAULT]])
 
@@ -53,13 +53,13 @@ def test_persist_counts_who_was_struck_in_this_sample() -> None:
 @pytest.mark.parametrize(("needed", "window"), [(0, 5), (6, 5), (1, 32)])
 def test_persist_says_what_it_needs(needed: int, window: int) -> None:
     with pytest.raises(ValueError, match="1 <= needed <= window <= 31"):
-        Persist(jnp.zeros(1), needed, window)
+        Persist(1, needed, window)
 
 
 def test_share_decides_how_many_an_alarm_accuses() -> None:
     shares = Says(jnp.ones((1, 3), bool), jnp.array([[0.6, 0.3, 0.1]]))
     for share, named in ((1.0, 1), (0.5, 2), (0.1, 3)):
-        monitor = says([branch(shares)], (0, 1, 2), decision=Exceed(jnp.zeros(3), share))
+        monitor = says([branch(shares)], (0, 1, 2), decision=Exceed(share))
         told = walk(monitor, script([[2.0]], np.ones((1, 3))))
         assert (told.channel[0] == FAULT).sum() == named
 

@@ -24,7 +24,7 @@ class OneUnknown(FromBlock):
 def one_unknown(most: int, channels: int = 4) -> Monitor:
     hold_s = jnp.zeros(channels)
     branches = (Branch(Outlier(), Fixed(jnp.full(channels, 4.0))),)
-    return Monitor(OneUnknown(channels), branches, Exceed(hold_s), Drop(), hold_s, tuple(range(channels)), most)
+    return Monitor(OneUnknown(channels), branches, Exceed(), Drop(), hold_s, tuple(range(channels)), most)
 
 
 def lies(*value: float):

@@ -51,9 +51,8 @@ class Log:
 @functools.cache
 def norm_monitor() -> Monitor:
     branch = Branch(Norm(jnp.asarray(SCALE)), ScaledMax(jnp.array([LARGEST])))
-    hold_s = jnp.full(CHANNELS, HOLD_S)
     rebuild = Rebuild(jnp.asarray(HORIZON_S), jnp.asarray(READMIT_S), CHANNELS)
-    return Monitor(FromBlock(CHANNELS), (branch,), Exceed(hold_s), rebuild, jnp.zeros(CHANNELS), (0, 0, 1))
+    return Monitor(FromBlock(CHANNELS), (branch,), Exceed(), rebuild, jnp.full(CHANNELS, HOLD_S), (0, 0, 1))
 
 
 @settings(max_examples=40, deadline=None)
@@ -61,7 +60,10 @@ def norm_monitor() -> Monitor:
 def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) -> None:
     log = Log(seed, missing, held)
     told = log.through(norm_monitor())
-    named, tested_at, healthy_at, accused_at = [False] * CHANNELS, *([-np.inf] * CHANNELS for _ in range(3))
+    named, tested_at, healthy_at, accused_at, seen_at = (
+        [False] * CHANNELS,
+        *([-np.inf] * CHANNELS for _ in range(4)),
+    )
     for k, t in enumerate(log.time):
         fresh = [c for c in range(CHANNELS) if log.fresh[k, c]]
         error = {c: (log.value[k, c] - log.expected[k, c]) / SCALE[c] for c in fresh}
@@ -86,10 +88,14 @@ def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) 
         for c in range(CHANNELS):
             if alarm and c in fresh and named[c]:
                 accused_at[c] = t
-            doubted = t - accused_at[c] <= READMIT_S
+            arrived = not np.isnan(log.value[k, c])
+            present = arrived or t - seen_at[c] <= HOLD_S
+            seen_at[c] = t if arrived else seen_at[c]
+            standing = c not in fresh and present and verdict[c] == FAULT and accused_at[c] >= healthy_at[c]
+            doubted = t - accused_at[c] <= READMIT_S or standing
             if c in fresh and not doubted:
                 healthy_at[c] = t
-            filled = doubted and not np.isnan(log.value[k, c]) and t - healthy_at[c] <= HORIZON_S
+            filled = doubted and present and t - healthy_at[c] <= HORIZON_S
             assert trust.measured[k, c] == (c in fresh and not doubted)
             assert trust.filled[k, c] == filled
             assert trust.learn[k, c] == (trust.measured[k, c] and verdict[c] == OK and sample == OK)
@@ -100,9 +106,9 @@ def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) 
 @functools.cache
 def repeats_monitor(needed: int, window: int) -> Monitor:
     branch = Branch(Repeats(CHANNELS), Fixed(jnp.zeros(CHANNELS)))
-    decision = Persist(jnp.full(CHANNELS, HOLD_S), needed, window)
+    decision = Persist(CHANNELS, needed, window)
     rebuild = Rebuild(jnp.asarray(HORIZON_S), jnp.asarray(READMIT_S), CHANNELS)
-    return Monitor(FromBlock(CHANNELS), (branch,), decision, rebuild, jnp.zeros(CHANNELS), (0, 1, 2))
+    return Monitor(FromBlock(CHANNELS), (branch,), decision, rebuild, jnp.full(CHANNELS, HOLD_S), (0, 1, 2))
 
 
 @pytest.mark.usefixtures("promoting")
@@ -115,7 +121,7 @@ def test_repeats_persist(seed: int, missing: float, held: float, rule: tuple[int
         log.value[:] = np.where(np.isnan(log.value), np.nan, 1.0)  # nothing but repeats
     told = log.through(repeats_monitor(needed, window))
     for c in range(CHANNELS):
-        last, run, memory, named, tested_at = 0.0, 0, deque(maxlen=window), False, -np.inf
+        last, run, memory, named, tested_at = None, 0, deque(maxlen=window), False, -np.inf
         for k, t in enumerate(log.time):
             if log.fresh[k, c]:
                 run = run + 1 if log.value[k, c] == last else 0

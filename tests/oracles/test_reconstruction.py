@@ -32,7 +32,7 @@ def test_forward_pass(activation: str) -> None:
     value = center + half * rng.uniform(-1.5, 1.5, (20, CHANNELS))
     hold_s = jnp.zeros(CHANNELS)
     branch = Branch(Norm(jnp.ones(CHANNELS)), Fixed(jnp.array([jnp.inf])))
-    told = walk(Monitor(residual, (branch,), Exceed(hold_s), Drop(), hold_s, (0, 1, 2, 3)), log(value)).reports
+    told = walk(Monitor(residual, (branch,), Exceed(), Drop(), hold_s, (0, 1, 2, 3)), log(value)).reports
     for k in range(20):
         x = (value[k] - center) / half
         h = [ACTIVATIONS[activation](sum(w[j, i] * x[i] for i in range(CHANNELS)) + b[j]) for j in range(HIDDEN)]

@@ -6,7 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Bool, Float, Int, Int8
 
 from sensorfault.stage import Stage, keep_finite
 from sensorfault.types import (
@@ -38,7 +38,7 @@ class Branch(eqx.Module):
 
 
 class MonitorState(NamedTuple):
-    """The states of the parts, and per channel the last value seen and when."""
+    """The states of the parts; of each channel the last value and its time, the last verdict and its test's time."""
 
     residual: Any
     branches: tuple[tuple[Any, Any], ...]
@@ -46,6 +46,8 @@ class MonitorState(NamedTuple):
     recovery: Any
     last: Float[Array, " C"]
     seen: Float[Array, " C"]
+    verdict: Int8[Array, " C"]
+    tested: Float[Array, " C"]
 
 
 class _Judgement(NamedTuple):
@@ -65,8 +67,7 @@ class Monitor(eqx.Module):
     `owner[c]` is the sensor of channel c. `most` bounds how many sensors one sample may exclude, largest first; what is
     still accused then is *unknown*. With most = 0 all accused are named at once. `together`: a fault on one channel
     takes out its whole sensor (a fix), not only the channels accused (an axis of a gyro). `hold_s[c]`: for how long a
-    value may stand in for a missing one before the channel counts as absent [s]; 0 for a channel that comes with every
-    sample.
+    value and a verdict stand without a new measurement [s]; 0 for a channel that comes with every sample.
     """
 
     residual: Stage[Any, Sample, Residual, Any]
@@ -87,7 +88,9 @@ class Monitor(eqx.Module):
             self.decision.init(),
             self.recovery.init(),
             jnp.zeros(channels),
-            jnp.full(channels, NEVER),
+            jnp.full(channels, NEVER, float),
+            jnp.full(channels, UNKNOWN, jnp.int8),
+            jnp.full(channels, NEVER, float),
         )
 
     def step(self, state: MonitorState, sample: Sample) -> tuple[MonitorState, Report]:
@@ -101,22 +104,25 @@ class Monitor(eqx.Module):
 
         first = self._judge(state, residual, nobody)
         told, decided, struck, out = self._exclude(state, residual, first)
-        verdict, gated = self._verdict(told, struck, out)
+        verdict, tested, gated = self._verdict(state, sample, told, struck, out)
         trust, recovered = self.recovery.evaluate(state.recovery, (sample, residual, verdict, gated))
+        trust = trust._replace(learn=trust.learn & ~told.suspect)
 
         # Evidence windows take what the first judgement saw, suspicious or not; the decision remembers the last one.
-        parts = (
-            self.residual.update(work, trust),
-            tuple(
-                (b.statistic.update(s, trust), b.threshold.update(t, trust))
-                for b, (s, t) in zip(self.branches, first.pending, strict=True)
-            ),
-            self.decision.update(decided, trust),
-            self.recovery.update(recovered, trust),
+        branches = tuple(
+            (keep_finite(b.statistic.update(s, trust), a), keep_finite(b.threshold.update(t, trust), c))
+            for b, (s, t), (a, c) in zip(self.branches, first.pending, state.branches, strict=True)
         )
-        kept = [keep_finite(new, old) for new, old in zip(parts, state[:4], strict=True)]
-        seen = jnp.where(arrived, sample.time, state.seen)
-        after = MonitorState(kept[0], kept[1], kept[2], kept[3], sample.value, seen)
+        after = MonitorState(
+            residual=keep_finite(self.residual.update(work, trust), state.residual),
+            branches=branches,
+            decision=keep_finite(self.decision.update(decided, trust), state.decision),
+            recovery=keep_finite(self.recovery.update(recovered, trust), state.recovery),
+            last=sample.value,
+            seen=jnp.where(arrived, sample.time, state.seen),
+            verdict=verdict.channel,
+            tested=tested,
+        )
         return after, Report(residual, first.scores, first.limits, verdict, trust, silence)
 
     def _intake(
@@ -124,7 +130,7 @@ class Monitor(eqx.Module):
     ) -> tuple[Sample, Bool[Array, " C"]]:
         """What is not a number is not there; what came a moment ago is held, not absent."""
         arrived = sample.present & jnp.isfinite(sample.value)
-        held = (silence <= self.hold_s) & ~sample.born
+        held = (silence >= 0) & (silence <= self.hold_s) & ~sample.born
         value = jnp.where(arrived, sample.value, state.last)
         return sample._replace(value=value, present=arrived | held, fresh=sample.fresh & arrived), arrived
 
@@ -137,7 +143,7 @@ class Monitor(eqx.Module):
             limits.append(limit)
             pending.append((s, t))
         gates = tuple(branch.gates for branch in self.branches)
-        evidence = Evidence(residual.time, tuple(scores), tuple(limits), gates, struck)
+        evidence = Evidence(residual.time, tuple(scores), tuple(limits), gates, struck, residual.born)
         told, decided = self.decision.evaluate(state.decision, evidence)
         return _Judgement(tuple(scores), tuple(limits), tuple(pending), told, decided)
 
@@ -154,7 +160,7 @@ class Monitor(eqx.Module):
             return first.told, first.decided, nobody, nobody
 
         def accused(told: Accusation, out: Bool[Array, " C"]) -> Bool[Array, " C"]:
-            return told.named & (told.size > -jnp.inf) & ~out
+            return told.gated & (told.size > -jnp.inf) & ~out
 
         def more(carry: _Round) -> Bool[Array, ""]:
             told, _, _, out, rounds = carry
@@ -174,14 +180,26 @@ class Monitor(eqx.Module):
         return told, decided, struck, out
 
     def _verdict(
-        self, told: Accusation, struck: Bool[Array, " C"], out: Bool[Array, " C"]
-    ) -> tuple[Verdict, Bool[Array, " C"]]:
-        """Three-valued verdicts, and which channels a filter must not take in."""
+        self,
+        state: MonitorState,
+        sample: Sample,
+        told: Accusation,
+        struck: Bool[Array, " C"],
+        out: Bool[Array, " C"],
+    ) -> tuple[Verdict, Float[Array, " C"], Bool[Array, " C"]]:
+        """Three-valued verdicts, when each channel was last tested, and which channels a filter must not take in."""
         # Accused by this sample's own scores, yet no exclusion left: unknown, not ok.
-        left = told.named & (told.size > -jnp.inf) & ~struck & bool(self.most)
+        left = told.gated & (told.size > -jnp.inf) & ~struck & bool(self.most)
         bad = told.named & ~left
         clear = told.tested & ~left & ~out
-        channel = jnp.where(bad, FAULT, jnp.where(clear, OK, UNKNOWN)).astype(jnp.int8)
+        # Without a new test the last verdict stands for hold_s, unless the slot now carries another source.
+        age = sample.time - state.tested
+        stands = ~told.tested & ~out & ~sample.born & (age >= 0) & (age <= self.hold_s)
+        old = jnp.where(stands, state.verdict, jnp.int8(UNKNOWN))
+        channel = jnp.where(bad, jnp.int8(FAULT), jnp.where(clear, jnp.int8(OK), old))
         sensor = jax.ops.segment_max(channel, jnp.asarray(self.owner), max(self.owner) + 1)
-        sample = jnp.where(bad.any() | told.hit, FAULT, jnp.where(told.tested.any(), OK, UNKNOWN)).astype(jnp.int8)
-        return Verdict(channel, sensor, sample), told.gated | out | (left & told.gated)
+        known = (channel != UNKNOWN).any()
+        wrong = told.hit | (channel == FAULT).any()
+        whole = jnp.where(wrong, jnp.int8(FAULT), jnp.where(known, jnp.int8(OK), jnp.int8(UNKNOWN)))
+        tested = jnp.where(told.tested, sample.time, state.tested)
+        return Verdict(channel, sensor, whole), tested, told.gated | out | left

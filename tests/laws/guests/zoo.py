@@ -48,7 +48,7 @@ def log(value: np.ndarray, fresh: np.ndarray | bool = True, block=(), time: np.n
 
 def monitor(residual, branches, owner, *, recovery=None, most=0, hold_s=0.0) -> Monitor:
     hold_s = jnp.broadcast_to(jnp.asarray(hold_s, float), (len(owner),))
-    return Monitor(residual, branches, Exceed(hold_s), recovery or Drop(), hold_s, owner, most)
+    return Monitor(residual, branches, Exceed(), recovery or Drop(), hold_s, owner, most)
 
 
 def limits(limit: float, tests: int) -> Fixed:

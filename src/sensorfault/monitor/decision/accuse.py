@@ -9,9 +9,10 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
     """Whom this sample's own scores accuse.
 
     A test over its limit names every channel with at least `share` of its largest blame; the size of an accusation is
-    blame times score over limit. Struck channels stay accused; their size is -inf, since they are out already.
+    blame times score over limit. Struck channels stay accused; their size is -inf, since they are out already. Where
+    a test can say nothing on whose account it is over, all it covers are suspect.
     """
-    named, gated, tested = evidence.struck, evidence.struck, evidence.struck
+    named = gated = suspect = tested = evidence.struck
     size = jnp.full(evidence.struck.shape, -jnp.inf)
     hit = evidence.struck.any()
     for score, limit, gates in zip(evidence.scores, evidence.limits, evidence.gates, strict=True):
@@ -23,6 +24,7 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
         accused = accused.any(axis=0)
         named |= accused
         gated |= accused & gates
+        suspect |= (over[:, None] & jnp.where(most > 0, score.blame > 0, score.covers)).any(axis=0)
         tested |= (score.valid[:, None] & score.covers).any(axis=0)
         hit |= over.any()
-    return Accusation(named, gated, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)
+    return Accusation(named, gated, suspect, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)

@@ -4,22 +4,23 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Int
 
 from sensorfault.monitor.decision.accuse import accuse
-from sensorfault.monitor.decision.exceed import Held, hold
-from sensorfault.types import NEVER, Accusation, Evidence, Trust
+from sensorfault.types import Accusation, Evidence, Trust
 
 
-class _Memory(NamedTuple):
-    held: Held
-    recent: Int[Array, " C"]  # the last tests of the channel, one bit each, the newest lowest
+class _Recent(NamedTuple):
+    """The last tests, one bit each, the newest lowest: of each channel, and of the sample as a whole."""
+
+    channel: Int[Array, " C"]
+    sample: Int[Array, ""]
 
 
 class Persist(eqx.Module):
     """`needed` of `window` (at most 31): one wild score is not yet a fault."""
 
-    hold_s: Float[Array, " C"]
+    channels: int = eqx.field(static=True)
     needed: int = eqx.field(static=True)
     window: int = eqx.field(static=True)
     share: float = eqx.field(static=True, default=0.5)
@@ -28,25 +29,24 @@ class Persist(eqx.Module):
         if not 1 <= self.needed <= self.window <= 31:
             raise ValueError(f"persist: needs 1 <= needed <= window <= 31, got {self.needed} of {self.window}")
 
-    def init(self) -> _Memory:
-        shape = self.hold_s.shape
-        held = Held(jnp.zeros(shape, bool), jnp.full(shape, NEVER))
-        return _Memory(held, jnp.zeros(shape, jnp.int32))
+    def init(self) -> _Recent:
+        return _Recent(jnp.zeros(self.channels, jnp.int32), jnp.zeros((), jnp.int32))
 
-    def evaluate(self, state: _Memory, evidence: Evidence) -> tuple[Accusation, _Memory]:
+    def evaluate(self, state: _Recent, evidence: Evidence) -> tuple[Accusation, _Recent]:
         now = accuse(evidence, self.share)
-        shifted = ((state.recent << 1) | now.named) & ((1 << self.window) - 1)
-        recent = jnp.where(now.tested, shifted, state.recent)
-        enough = jnp.bitwise_count(recent) >= self.needed
-        named = enough & now.tested
-        size = jnp.where(named, now.size, -jnp.inf)
-        told, held = hold(
-            state.held,
-            evidence,
-            now._replace(named=named, gated=named & now.gated, size=size, hit=named.any()),
-            self.hold_s,
+        mask = (1 << self.window) - 1
+        channel = jnp.where(evidence.born, 0, state.channel)
+        channel = jnp.where(now.tested, ((channel << 1) | now.named.astype(jnp.int32)) & mask, channel)
+        sample = ((state.sample << 1) | now.hit.astype(jnp.int32)) & mask
+        sample = jnp.where(now.tested.any(), sample, state.sample)
+        named = now.tested & (jnp.bitwise_count(channel) >= self.needed)
+        told = now._replace(
+            named=named,
+            gated=named & now.gated,
+            size=jnp.where(named, now.size, -jnp.inf),
+            hit=now.tested.any() & (jnp.bitwise_count(sample) >= self.needed),
         )
-        return told, _Memory(held, recent)
+        return told, _Recent(channel, sample)
 
-    def update(self, pending: _Memory, trust: Trust) -> _Memory:
+    def update(self, pending: _Recent, trust: Trust) -> _Recent:
         return pending

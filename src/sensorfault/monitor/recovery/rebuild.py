@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.types import NEVER, OK, Residual, Sample, Trust, Verdict
+from sensorfault.types import FAULT, NEVER, OK, Residual, Sample, Trust, Verdict
 
 
 class _Since(NamedTuple):
@@ -26,7 +26,7 @@ class Rebuild(eqx.Module):
     channels: int = eqx.field(static=True)
 
     def init(self) -> _Since:
-        return _Since(jnp.full(self.channels, NEVER), jnp.full(self.channels, NEVER))
+        return _Since(jnp.full(self.channels, NEVER, float), jnp.full(self.channels, NEVER, float))
 
     def evaluate(
         self, state: _Since, seen: tuple[Sample, Residual, Verdict, Bool[Array, " C"]]
@@ -34,6 +34,8 @@ class Rebuild(eqx.Module):
         sample, residual, verdict, gated = seen
         accused = jnp.where(gated, sample.time, state.accused)
         doubted = sample.time - accused <= self.readmit_s
+        held = ~sample.fresh & sample.present & (verdict.channel == FAULT) & (state.accused >= state.healthy)
+        doubted = doubted | held
         measured = sample.fresh & ~doubted
         filled = doubted & sample.present & (sample.time - state.healthy <= self.horizon_s)
         trust = Trust(

@@ -22,13 +22,15 @@ class Exchange(eqx.Module):
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
         valid = residual.valid
-        square = jnp.where(valid, (residual.value / self.scale) ** 2, 0.0)
-        without = jnp.where(valid, (residual.extra / self.scale) ** 2, 0.0)  # [k, channel]
         out = jnp.asarray(residual.out)
-        total = jnp.where(out.any(), jnp.where(out, without.sum(axis=1), jnp.inf).min(), square.sum())
-        taken = jnp.where(valid, jnp.maximum(total - without.sum(axis=1), 0.0), 0.0)
+        e = jnp.where(valid, residual.value / self.scale, 0.0)
+        e_k = jnp.where(valid, residual.extra / self.scale, 0.0)  # [k, channel]
+        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, lest a wild value overflow
+        without = ((e_k / largest) ** 2).sum(axis=1)
+        total = jnp.where(out.any(), jnp.where(out, without, jnp.inf).min(), ((e / largest) ** 2).sum())
+        taken = jnp.where(valid, jnp.maximum(total - without, 0.0), 0.0)
         score = Score(
-            value=jnp.sqrt(total)[None],
+            value=largest * jnp.sqrt(total)[None],
             valid=valid.any()[None],
             covers=valid[None],
             blame=(taken / jnp.where(total > 0, total, 1.0))[None],

@@ -19,10 +19,12 @@ class Norm(eqx.Module):
         return ()
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
-        square = jnp.where(residual.valid, (residual.value / self.scale) ** 2, 0.0)
+        e = jnp.where(residual.valid, residual.value / self.scale, 0.0)
+        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, lest a wild value overflow
+        square = (e / largest) ** 2
         total = square.sum()
         score = Score(
-            value=jnp.sqrt(total)[None],
+            value=largest * jnp.sqrt(total)[None],
             valid=residual.valid.any()[None],
             covers=residual.valid[None],
             blame=(square / jnp.where(total > 0, total, 1.0))[None],
