@@ -1,0 +1,159 @@
+"""The whole way of a user, from an unknown CSV to a report, on a small drive."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cli.conftest import Run, Said
+
+KEYS = {"start_s", "end_s", "subject", "sensor", "channel", "kind", "peak_score", "limit", "method"}
+FAULTS = ("short:gyro.x:61:0:30sigma", "bias:gyro.z:64:3:20sigma", "jam:accelerometer.x:70:3", "miss:gyro:76:2")
+
+
+def injected(run: Run, drive: Path) -> Said:
+    options = [word for fault in FAULTS for word in ("--fault", fault)]
+    said = run("inject", drive, *options, "--out", "bad.csv", "--json", "-")
+    assert said.code == 0, said.err
+    return said
+
+
+def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path) -> None:
+    # init
+    said = run("init", drive)
+    assert said.code == 0, said.err
+    assert said.out == ""
+    assert "gyro: x [deg/s], y [deg/s], z [deg/s]" in said.err
+    text = (tmp_path / "vehicle.toml").read_text()
+    assert "[sensor.accelerometer]" in text
+    assert text.count("#") > 5  # each guess with its reason
+
+    # fit
+    said = run("fit", drive, "--until", 60, "--out", "car.sensorfault", "--json", "fit.json")
+    assert said.code == 0, said.err
+    assert "False alarms: 0 in the 18 s held out" in said.err
+    told = json.loads((tmp_path / "fit.json").read_text())
+    assert told["method"] == "elm-autoencoder"
+    assert told["alarms_per_hour"] == 0
+    assert len(told["watched"]) == 6
+
+    # inject
+    told = json.loads(injected(run, drive).out)
+    assert [fault["kind"] for fault in told["truth"]] == ["short", "bias", "jam", "miss"]
+    assert json.loads((tmp_path / "bad.truth.json").read_text()) == told["truth"]
+
+    # detect, into a file and to standard output
+    said = run("detect", "bad.csv", "--model", "car.sensorfault", "--json", "found.json", "--report", "page.html")
+    assert said.code == 0, said.err
+    assert "1:04.00" in said.out
+    again = run("detect", "bad.csv", "--model", "car.sensorfault", "--json", "-")
+    found = json.loads(again.out)
+    assert found == json.loads((tmp_path / "found.json").read_text())
+    assert "1:04.00" in again.err  # the table makes room
+    assert all(set(event) == KEYS for event in found["events"])
+    for fault in told["truth"]:
+        during = [e for e in found["events"] if fault["start_s"] <= e["start_s"] <= fault["start_s"] + 1]
+        assert (fault["sensor"], fault["channel"], fault["kind"]) in [
+            (event["sensor"], event["channel"], event["kind"]) for event in during
+        ]
+    page = (tmp_path / "page.html").read_text()
+    assert page.startswith("<!")
+    assert "accelerometer" in page
+
+    # evaluate
+    said = run("evaluate", "bad.csv", "--model", "car.sensorfault", "--truth", "bad.truth.json", "--json", "-")
+    assert said.code == 0, said.err
+    told = json.loads(said.out)
+    assert [outcome["found"] for outcome in told["outcomes"]] == [True] * 4
+    assert [outcome["sensor_right"] for outcome in told["outcomes"]] == [True] * 4
+    assert told["false_alarms_per_hour"] == 0
+    assert "False alarms where nothing was injected: 0" in said.err
+
+    # report
+    said = run("report", "bad.csv", "--model", "car.sensorfault", "--truth", "bad.truth.json", "--out", "why.html")
+    assert said.code == 0, said.err
+    assert said.out == ""
+    assert (tmp_path / "why.html").read_text().startswith("<!")
+
+    made = {"bad.csv", "bad.truth.json", "bad.vehicle.toml", "car.sensorfault", "drive.csv", "fit.json"}
+    made |= {"found.json", "page.html", "vehicle.toml", "why.html"}
+    assert {file.name for file in tmp_path.iterdir()} == made
+
+
+def test_detect_without_a_model_says_what_that_means(run: Run, drive: Path) -> None:
+    said = run("detect", drive, "--json", "-")
+    assert said.code == 0, said.err
+    assert "No model was given: elm-autoencoder was fitted on the log's own beginning, 0:00.00 to 0:39.99" in said.err
+    assert "taken as healthy" in said.err
+    assert "the false-alarm rate is not known" in said.err
+    told = json.loads(said.out)
+    assert told["events"] == []
+    assert told["fitted_on_s"] == [0.0, pytest.approx(39.99)]
+    assert told["judged_s"][0] >= told["fitted_on_s"][1]
+    assert told["log"] == "drive"
+
+
+def test_detect_says_that_columns_were_guessed(run: Run, drive: Path, car: Path) -> None:
+    guessed = run("detect", drive, "--model", car)
+    assert guessed.code == 0, guessed.err
+    assert "sensorfault init" in guessed.err
+    assert guessed.out == ""
+    assert "none" in guessed.err
+    run("init", drive)
+    described = run("detect", drive, "--model", car)
+    assert "sensorfault init" not in described.err
+
+
+def test_evaluate_without_a_truth_injects_one(run: Run, drive: Path, car: Path) -> None:
+    said = run("evaluate", drive, "--model", car, "--duration", 2, "--repeats", 1, "--json", "-")
+    assert said.code == 0, said.err
+    told = json.loads(said.out)
+    assert {cell["kind"] for cell in told["cells"]} == {
+        *("short", "bias", "drift", "jam", "miss", "noise", "scale", "delay"),
+    }
+    assert told["false_alarms_per_hour"] == 0
+    assert told["healthy_hours"] == pytest.approx(80 / 3600, rel=0.01)
+    assert 0.5 < told["auc"] <= 1
+    assert set(told["isolation"]) <= {"gyro", "accelerometer", "east_m", "north_m", "gnss"}
+
+
+def test_evaluate_leaves_out_faults_in_the_part_fitted_on(run: Run, drive: Path) -> None:
+    assert run("inject", drive, "--fault", "miss:gyro:20:2", "--fault", "miss:gyro:60:2", "--out", "bad.csv").code == 0
+    said = run("evaluate", "bad.csv", "--truth", "bad.truth.json", "--json", "-")
+    assert said.code == 0, said.err
+    assert "1 faults lie in the part that was fitted on" in said.err
+    assert [outcome["fault"]["start_s"] for outcome in json.loads(said.out)["outcomes"]] == [60.0]
+
+
+def test_the_catalog(run: Run) -> None:
+    said = run("methods", "--json", "-")
+    assert said.code == 0
+    assert said.err == ""
+    told = json.loads(said.out)["methods"]
+    assert [method["name"] for method in told] == ["elm-autoencoder", "pca"]
+    assert all(set(method) == {"name", "title", "source", "promise"} for method in told)
+    table = run("methods")
+    assert "elm-autoencoder" in table.out
+    assert "Min et al. 2021" in table.out
+
+
+def test_the_other_method(run: Run, drive: Path, tmp_path: Path) -> None:
+    said = run("fit", drive, "--method", "pca", "--held-out", 0.2, "--json", "-")
+    assert said.code == 0, said.err
+    assert json.loads(said.out)["model"] == "drive.sensorfault"
+    said = run("detect", drive, "--model", "drive.sensorfault", "--json", "-")
+    assert json.loads(said.out)["method"] == "pca"
+
+
+def test_json_has_no_nan(run: Run, drive: Path, car: Path) -> None:
+    """A miss has no AUC, an undetected fault no delay: null, as JSON knows no other."""
+    assert run("inject", drive, "--fault", "bias:gyro.x:70:1:0.001", "--out", "bad.csv").code == 0
+    said = run("evaluate", "bad.csv", "--model", car, "--truth", "bad.truth.json", "--json", "-")
+    assert "NaN" not in said.out
+    (outcome,) = json.loads(said.out)["outcomes"]
+    assert (outcome["found"], outcome["delay_s"]) == (False, None)
+
+
+def test_the_same_words_give_the_same_answer(run: Run, drive: Path) -> None:
+    one, two = (run("detect", drive, "--learn", 0.6, "--seed", 3, "--json", "-").out for _ in range(2))
+    assert json.loads(one) == json.loads(two)
