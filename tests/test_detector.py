@@ -14,6 +14,7 @@ from sensorfault.events import KINDS, Event
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.fit import fit
 from sensorfault.run import Now
 from sensorfault.types import FAULT, OK, UNKNOWN
 
@@ -96,6 +97,39 @@ def test_a_healthy_log_has_no_events() -> None:
     assert (healthy.channel[:, :6] == OK).all()
     assert (healthy.channel[:, 6:] == UNKNOWN).all()  # a fix is watched for silence only
     np.testing.assert_array_equal(healthy.repaired, fitted.unseen().value)
+
+
+def test_an_event_that_is_over_has_an_end() -> None:
+    """Also the last one of a log."""
+    lying = inject(fitted.unseen(), [Fault("bias", "gyro", "z", 110.0, 5.0, 20.0, sigmas=True)]).log
+    assert [event.end_s for event in detect(fitted.model(), lying).events] == [pytest.approx(114.98)]
+
+
+def held_often() -> Log:
+    """Instead of a fix, two channels that are new in two rows of three: often enough to be judged."""
+    log = fitted.rig()
+    rows = np.arange(len(log))
+    new = rows % 3 != 2
+    value = log.value.copy()
+    value[:, 6:] = log.value[rows - ~new][:, :2]
+    fresh = log.fresh.copy()
+    fresh[:, 6:] = new[:, None]
+    return replace(log, value=value, fresh=fresh)
+
+
+def test_live_knows_a_held_value_of_a_judged_sensor() -> None:
+    """What is merely held is not tested, so it does not add to the repeats of a jam, live as in the log."""
+    log = held_often()
+    model = fit(log.between(end_s=fitted.LEARN_S), held_out=0.0)
+    assert all(model.watched)
+    rest = log.between(fitted.LEARN_S, 110.0)
+    found, live = detect(model, rest), Live(model)
+    for time, value, fresh, verdict in zip(rest.time, rest.value, rest.fresh, found.channel, strict=True):
+        now = live.push(time, value)
+        np.testing.assert_array_equal(now.valid[6:], fresh[6:])
+        np.testing.assert_array_equal(now.channel, verdict)
+    assert found.events == ()
+    assert live.events == live.open() == []
 
 
 def test_verdicts_are_three_valued_and_a_sensor_is_its_worst_channel() -> None:

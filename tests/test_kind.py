@@ -100,10 +100,10 @@ def test_in_how_many_parts_it_comes_does_not_matter(seed: int, n: int, chunk: in
     assert kind(residual, measured, chunk=chunk) == kind(residual, measured, chunk=1)
 
 
-@given(SEEDS, st.sampled_from(["bias", "drift", "noise"]), st.floats(0, 1e6))
+@given(SEEDS, st.sampled_from(["bias", "drift", "noise"]), st.sampled_from([1e3, 1e6, 1.8e9]))
 @settings(max_examples=40, deadline=None)
 def test_when_it_happens_does_not_matter(seed: int, what: str, start_s: float) -> None:
-    """The sums run from the event's own start: an hour into a drive the same residual has the same name."""
+    """The sums run from the event's own start: in Unix time the same residual has the same name."""
     rng = np.random.default_rng(seed)
     n = 200
     residual = (

@@ -156,6 +156,14 @@ def test_healthy_looking_samples_within_an_event_count() -> None:
     assert drive.quiet().only().kind == "jam"
 
 
+def test_each_measurement_counts_once() -> None:
+    """Up, twice as long down, up again: no mean and no slope, unless the first ones are counted more often."""
+    drive = Drive()
+    for up in (True, False, False, True):
+        drive.run(10, accused={X: 4.0 if up else -4.0})
+    assert drive.quiet().only().kind == "noise"
+
+
 def test_two_channels_of_a_sensor_with_the_same_fault_are_one_event() -> None:
     event = Drive().run(1, accused={X: 4.0}, score=3.0).run(30, accused={X: 4.0, Y: -5.0}).quiet().only()
     assert (event.sensor, event.channel, event.kind) == ("gyro", None, "bias")
