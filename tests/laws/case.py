@@ -40,8 +40,7 @@ class Case:
     @property
     def hold_s(self) -> np.ndarray:
         """How long a verdict may stand without a new measurement [s]."""
-        decided = getattr(self.monitor.decision, "hold_s", np.zeros(self.channels))
-        return np.maximum(np.asarray(decided), np.asarray(self.monitor.hold_s))
+        return np.asarray(self.monitor.hold_s)
 
     def __str__(self) -> str:
         return self.name

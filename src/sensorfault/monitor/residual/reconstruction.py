@@ -50,8 +50,8 @@ class Reconstruction(eqx.Module):
         copy = self.output @ f(a) + self.offset
         # The same for C samples, in the k-th of which x_k is what it was when last trusted.
         change = (trusted - value) / self.half
-        exchanged = x + jnp.diag(change)
-        copies = f(a + change[:, None] * self.weights.T) @ self.output.T + self.offset
+        exchanged = x[None] + jnp.diag(change)
+        copies = f(a[None] + change[:, None] * self.weights.T) @ self.output.T + self.offset[None]
         residual = Residual(
             time=sample.time,
             value=jnp.where(self.watched, (x - copy) * self.half, 0.0),
@@ -61,7 +61,7 @@ class Reconstruction(eqx.Module):
             noise=jnp.diagonal(self.cov),
             valid=sample.fresh & self.watched,
             born=sample.born,
-            extra=jnp.where(self.watched, (exchanged - copies) * self.half, 0.0),
+            extra=jnp.where(self.watched[None], (exchanged - copies) * self.half[None], 0.0),
         )
         return residual, _Work(value, trusted)
 

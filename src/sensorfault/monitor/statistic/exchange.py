@@ -24,7 +24,7 @@ class Exchange(eqx.Module):
         valid = residual.valid
         out = jnp.asarray(residual.out)
         e = jnp.where(valid, residual.value / self.scale, 0.0)
-        e_k = jnp.where(valid, residual.extra / self.scale, 0.0)  # [k, channel]
+        e_k = jnp.where(valid[None], residual.extra / self.scale[None], 0.0)  # [k, channel]
         largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, lest a wild value overflow
         without = ((e_k / largest) ** 2).sum(axis=1)
         total = jnp.where(out.any(), jnp.where(out, without, jnp.inf).min(), ((e / largest) ** 2).sum())
