@@ -122,7 +122,7 @@ def test_live_knows_a_held_value_of_a_judged_sensor() -> None:
     log = held_often()
     model = fit(log.between(end_s=fitted.LEARN_S), held_out=0.0)
     assert all(model.watched)
-    rest = log.between(fitted.LEARN_S, 110.0)
+    rest = log.between(fitted.LEARN_S + 0.01, 110.0)  # its first row is new
     found, live = detect(model, rest), Live(model)
     for time, value, fresh, verdict in zip(rest.time, rest.value, rest.fresh, found.channel, strict=True):
         now = live.push(time, value)
