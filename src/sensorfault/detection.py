@@ -23,11 +23,13 @@ class Trace:
 class Detection:
     """Verdicts (OK 0, UNKNOWN 1, FAULT 2) on every tick of `log`, the tests behind them, and the fault events.
 
+    `watched` says which channels were judged; of the others only silence was noticed.
     `repaired` is `log.value` with stand-ins where a channel was rebuilt, NaN where there was nothing to say [SI].
     """
 
     log: Log
     method: str
+    watched: tuple[bool, ...]
     channel: Int8[np.ndarray, "T C"]
     sensor: Int8[np.ndarray, "T S"]
     sample: Int8[np.ndarray, " T"]

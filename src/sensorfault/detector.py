@@ -28,6 +28,7 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
     return Detection(
         log=log,
         method=model.method,
+        watched=model.watched,
         channel=np.asarray(told.channel),
         sensor=np.asarray(told.sensor),
         sample=np.asarray(told.sample),

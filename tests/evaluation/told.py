@@ -37,6 +37,7 @@ def detection(events: Sequence[Event] = (), log: Log | None = None, repaired: np
     return Detection(
         log=log,
         method="hand",
+        watched=(True,) * verdict.shape[1],
         channel=verdict,
         sensor=verdict[:, :2],
         sample=verdict[:, 0],

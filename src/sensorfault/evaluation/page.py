@@ -13,7 +13,7 @@ from sensorfault.evaluation.page_figure import Json
 from sensorfault.evaluation.page_scores import scores
 from sensorfault.evaluation.page_signals import signals
 from sensorfault.evaluation.page_verdicts import verdicts
-from sensorfault.evaluation.page_words import event_table, facts, result, sentences, truth_table
+from sensorfault.evaluation.page_words import SILENCE_ONLY, blind, event_table, facts, result, sentences, truth_table
 from sensorfault.faults.fault import Fault
 
 POINTS = 300_000  # all lines together, and at most as many again around the events: 3 to 7 MB
@@ -95,5 +95,5 @@ def _place(name: str) -> str:
 
 def _signal_place(detection: Detection, number: int) -> str:
     sensor = detection.log.sensors[number]
-    about = "" if sensor.watch else " <small>not judged, only its silence is noticed</small>"
+    about = f" <small>not judged, {SILENCE_ONLY}</small>" if sensor.name in blind(detection) else ""
     return f"<h3>{escape(sensor.name)}{about}</h3>" + _place(f"signals-{number}")

@@ -10,6 +10,7 @@ from sensorfault.detection import Detection
 from sensorfault.evaluation.page_figure import Json, Row, packed, stacked
 from sensorfault.evaluation.page_lines import line
 from sensorfault.evaluation.page_marks import at, injected, kept, shades, whole
+from sensorfault.evaluation.page_words import SILENCE_ONLY, blind
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import from_si
@@ -77,6 +78,8 @@ def _row(detection: Detection, column: int, keep: Bool[np.ndarray, " T"], points
     ]
     marks = shades(detection, lambda event: at(event, channel)) + injected(detection, channel, truth)
     text = f"<b>{name}</b>{f' [{unit}]' if unit else ''}"
+    if not detection.watched[column] and channel.sensor not in blind(detection):
+        text += f" not judged, {SILENCE_ONLY}"
     return Row(text if traces else f"{text} never spoke", traces, marks)
 
 

@@ -9,6 +9,7 @@ from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
 
 MOTION, GAP, NAMELESS = "vehicle motion", "all (gap in the log)", "unknown which"  # where no sensor is named
+SILENCE_ONLY = "only its silence is noticed"
 
 
 def clock(seconds: float) -> str:
@@ -31,7 +32,6 @@ def _count(number: int, what: str) -> str:
 
 def result(detection: Detection) -> str:
     """The finding in one sentence."""
-    sensors = detection.log.sensors
     kinds = [_accused(event) for event in detection.events]
     named = {e.sensor for e in detection.events if e.sensor is not None and e.subject == "sensor"}
     faults = sum(accused not in (MOTION, GAP) for accused in kinds)
@@ -42,11 +42,18 @@ def result(detection: Detection) -> str:
         text += f", {_count(kinds.count(MOTION), 'implausible motion')}"
     if GAP in kinds:
         text += f", {_count(kinds.count(GAP), 'gap')} in the log"
-    text += f"; {_count(sum(s.watch for s in sensors), 'sensor')} watched"
-    blind = [s.name for s in sensors if not s.watch]
-    if blind:
-        text += f", {', '.join(blind)} not judged (only {'its' if len(blind) == 1 else 'their'} silence is noticed)"
+    unjudged = blind(detection)
+    text += f"; {_count(len(detection.log.sensors) - len(unjudged), 'sensor')} watched"
+    if unjudged:
+        silence = SILENCE_ONLY if len(unjudged) == 1 else SILENCE_ONLY.replace("its", "their")
+        text += f", {', '.join(unjudged)} not judged ({silence})"
     return escape(text[0].upper() + text[1:] + ".")
+
+
+def blind(detection: Detection) -> list[str]:
+    """Sensors of which no channel is judged."""
+    judged = {c.sensor for c, watched in zip(detection.log.channels, detection.watched, strict=True) if watched}
+    return [sensor.name for sensor in detection.log.sensors if sensor.name not in judged]
 
 
 def _accused(event: Event) -> str:
