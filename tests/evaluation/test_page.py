@@ -91,8 +91,8 @@ def drive(seconds: float = 60, name: str = "drive", gyro: str = "gyro") -> Detec
         time,
         value,
         fresh,
-        (Channel("x", gyro, "deg/s"), Channel("z", gyro, "deg/s"), Channel("latitude", "gnss", "deg")),
-        (Sensor(gyro, 0.02), Sensor("gnss", 0.1, held=True, watch=False)),
+        (Channel("x", gyro, "deg/s"), Channel("z", gyro, "deg/s"), Channel("latitude", "gnss", "deg", watch=False)),
+        (Sensor(gyro, 0.02), Sensor("gnss", 0.1, held=True)),
         name,
         ("gnss repeats 80 % of its rows.",),
     )
@@ -108,7 +108,7 @@ def drive(seconds: float = 60, name: str = "drive", gyro: str = "gyro") -> Detec
         Trace("repeats", "x", np.zeros(rows), np.full(rows, np.inf)),
     )
     traces[1].score[500] = 50
-    return Detection(log, "elm", channel, sensor, sensor.max(axis=1), repaired, traces, events)
+    return Detection(log, "elm", (True, True, False), channel, sensor, sensor.max(axis=1), repaired, traces, events)
 
 
 TRUTH = (
@@ -246,6 +246,17 @@ def test_headline_and_notes(tmp_path):
     assert "Injected faults" not in text
 
 
+def test_a_channel_that_is_not_judged_says_so(tmp_path):
+    half = replace(drive(), watched=(True, False, False))
+    seen = written(tmp_path, half)
+    assert "2 faults on 1 sensor; 1 sensor watched, gnss not judged" in seen.text
+    assert " ".join(seen.words).count("not judged, only its silence is noticed") == 1  # beside gnss
+    labels = [a["text"] for a in seen.figures["signals-0"]["layout"]["annotations"] if "<b>" in a["text"]]
+    assert labels == ["<b>x</b> [deg/s]", "<b>z</b> [deg/s] not judged, only its silence is noticed"]
+    none = written(tmp_path, replace(drive(), watched=(False,) * 3)).text
+    assert "no sensors watched, gyro, gnss not judged (only their silence is noticed)" in none
+
+
 def test_events_without_a_sensor_are_told_apart(tmp_path):
     nameless = Event(1.0, 2.0, "sensor", None, None, "unknown", 5.0, 1.0, "elm")
     events = (nameless, replace(nameless, subject="motion"), replace(nameless, kind="miss"))
@@ -367,11 +378,12 @@ def test_names_from_files_stay_names(tmp_path):
     log = replace(
         detection.log, notes=("<b>note",), channels=(Channel("<i>x", evil, "<u>"), *detection.log.channels[1:])
     )
-    log = replace(log, sensors=tuple(replace(sensor, watch=False) for sensor in log.sensors))
     named = replace(detection.events[0], channel="<i>x", kind="<s>", method="<s>")
     truth = (Fault("bias", evil, "<i>x", 10.0, 1.0), Fault("bias", evil, "<i>x", 50.0, 1.0))
     traces = (Trace(evil, "<i>x", detection.traces[0].score, detection.traces[0].limit),)
-    hostile = replace(detection, log=log, events=(named,), method="</script>", traces=traces)
+    hostile = replace(
+        detection, log=log, watched=(False, False, False), events=(named,), method="</script>", traces=traces
+    )
     plain = written(tmp_path, drive(), TRUTH)
     seen = written(tmp_path, hostile, truth, summary=("<b>summary",))
     assert {tag for tag, _ in seen.tags} == {tag for tag, _ in plain.tags}
@@ -400,7 +412,7 @@ def test_log_of_one_row_that_never_spoke(tmp_path):
         np.zeros(1), np.full((1, 1), np.nan), np.zeros((1, 1), dtype=bool), (Channel("x", "a"),), (Sensor("a", np.nan),)
     )
     verdict = np.ones((1, 1), dtype=np.int8)
-    seen = written(tmp_path, Detection(log, "pca", verdict, verdict, verdict[:, 0], log.value, (), ()))
+    seen = written(tmp_path, Detection(log, "pca", (False,), verdict, verdict, verdict[:, 0], log.value, (), ()))
     assert seen.figures["signals-0"]["data"] == []
     assert "never spoke" in seen.figures["signals-0"]["layout"]["annotations"][0]["text"]
     assert seen.figures["verdicts"]["layout"]["xaxis"]["range"] == [-0.5, 0.5]
@@ -431,7 +443,7 @@ def test_an_hour_of_twelve_channels_is_a_small_page():
     limit = np.full(rows, 3.0)
     traces = tuple(Trace("norm", c.path, np.abs(value[:, i]), limit) for i, c in enumerate(channels))
     events = tuple(Event(25.0 * i, 25.0 * i + 20, "sensor", "gyro", "x", "bias", 9.0, 3.0, "elm") for i in range(140))
-    detection = Detection(log, "elm", verdict, verdict[:, ::3], verdict[:, 0], value, traces, events)
+    detection = Detection(log, "elm", (True,) * 12, verdict, verdict[:, ::3], verdict[:, 0], value, traces, events)
     assert len(json.dumps(figures(detection))) < 12e6
 
 

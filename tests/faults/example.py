@@ -24,9 +24,9 @@ def example(ticks: int = 200) -> Log:
     channels = (
         Channel("x", "gyro", "deg/s"),
         Channel("z", "gyro", "deg/s"),
-        Channel("latitude", "gnss", "deg"),
+        Channel("latitude", "gnss", "deg", watch=False),
         Channel("speed", "gnss", "km/h"),
         Channel("pressure", "baro", "hPa"),
     )
-    sensors = (Sensor("gyro", 0.1), Sensor("gnss", 0.5, held=True, watch=False), Sensor("baro", 0.4))
+    sensors = (Sensor("gyro", 0.1), Sensor("gnss", 0.5, held=True), Sensor("baro", 0.4))
     return Log(time, value, fresh, channels, sensors)

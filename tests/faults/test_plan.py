@@ -13,9 +13,9 @@ LOG = example(6000)  # 600 s
 def test_a_sweep_is_every_kind_on_every_watched_channel() -> None:
     faults = sweep(LOG)
     assert {(f.kind, f.where) for f in faults} == {
-        (kind, path) for kind in KINDS for path in ("gyro.x", "gyro.z", "baro.pressure")
+        (kind, path) for kind in KINDS for path in ("gyro.x", "gyro.z", "gnss.speed", "baro.pressure")
     }
-    assert [f.where for f in sweep(LOG, ["jam"], ["gnss.speed"])] == ["gnss.speed"]
+    assert [f.where for f in sweep(LOG, ["jam"], ["gnss.latitude"])] == ["gnss.latitude"]
     with pytest.raises(FaultError, match="kind 'melt' is unknown"):
         sweep(LOG, ["melt"])
 
@@ -35,7 +35,7 @@ def test_planned_faults_keep_their_distance(lasting: list[float], seed: int, sta
 
 def test_a_planned_sweep_can_be_injected() -> None:
     planned = plan(LOG, sweep(LOG, duration_s=5.0), start_s=100.0, pause_s=8.0)
-    assert len(inject(LOG, planned).truth) == len(planned) == 24
+    assert len(inject(LOG, planned).truth) == len(planned) == 32
 
 
 def test_too_much_is_refused_in_a_sentence() -> None:

@@ -36,6 +36,13 @@ def described(vehicle: VehicleFile) -> dict[str, dict[str, tuple[str, str]]]:
     return {s.name: {c.name: (c.column, c.unit) for c in s.channels} for s in vehicle.sensors}
 
 
+def blind(vehicle: VehicleFile) -> set[str]:
+    """Channels that are not watched; each says why."""
+    unwatched = [(s, c) for s in vehicle.sensors for c in s.channels if not c.watch]
+    assert all("only its silence is noticed" in c.why for _, c in unwatched)
+    return {f"{s.name}.{c.name}" for s, c in unwatched}
+
+
 def round_trip(vehicle: VehicleFile) -> None:
     text = vehicle.to_toml()
     assert VehicleFile.parse(text) == vehicle
@@ -68,16 +75,16 @@ def test_a_car_log(
     assert described(vehicle) == {
         "accelerometer": {axis: (f"a{axis}", acc_unit) for axis in "xyz"},
         "gyro": {"x": ("rollrate", gyro_unit), "y": ("pitchrate", gyro_unit), "z": ("yawrate", gyro_unit)},
-        "gnss": {"speed": ("speed", speed_unit)},
-        "gnss_course": {"course": ("course", "deg")},
-        "gnss_position": {
+        "gnss": {
+            "speed": ("speed", speed_unit),
+            "course": ("course", "deg"),
             "latitude": ("latitude", "deg"),
             "longitude": ("longitude", "deg"),
             "altitude": ("altitude", "m"),
         },
     }
-    assert {s.name for s in vehicle.sensors if s.held} == {"gnss", "gnss_course", "gnss_position"}
-    assert {s.name for s in vehicle.sensors if not s.watch} == {"gnss_course", "gnss_position"}
+    assert {s.name for s in vehicle.sensors if s.held} == {"gnss"}
+    assert blind(vehicle) == {"gnss.course", "gnss.latitude", "gnss.longitude", "gnss.altitude"}
     assert {s.epoch for s in vehicle.sensors if s.held} == {"utc"}
     assert {column for column, _ in vehicle.files[0].left_out} == {"hdop", "fix", "utc"}
     round_trip(vehicle)
@@ -85,6 +92,64 @@ def test_a_car_log(
     assert log.fresh[:, log.index("speed")].sum() == ROWS // 5
     np.testing.assert_allclose(log.value[:, log.index("gyro.z")], GYRO[:, 2], rtol=1e-9)
     np.testing.assert_allclose(log.value[:, log.index("speed")], SPEED[FIX], rtol=1e-9)
+
+
+def receiver(speed: np.ndarray, course: np.ndarray, altitude: np.ndarray, epoch: bool) -> dict[str, np.ndarray]:
+    """10 Hz on rows of 50 Hz; each argument says, for each row, from which row that output is."""
+    height = np.round(120 + RANDOM.normal(size=ROWS), 3)
+    table = {
+        "t": TIME, "speed": SPEED[speed], "course": (np.degrees(HEADING) % 360)[course],
+        "latitude": LATITUDE[FIX], "longitude": LONGITUDE[FIX], "altitude": height[altitude],
+    }  # fmt: skip
+    return table | ({"utc": 123825300 + FIX * 20} if epoch else {})
+
+
+LATER, LATEST = (np.maximum(np.arange(ROWS) - k, 0) // 5 * 5 for k in (1, 2))  # the same fix, said a row or two later
+SECONDLY = np.arange(ROWS) // 50 * 50
+
+
+@pytest.mark.parametrize("epoch", [True, False])
+def test_a_receiver_that_says_all_at_once_is_one_sensor(tmp_path: Path, epoch: bool) -> None:
+    path = save(tmp_path, receiver(FIX, FIX, FIX, epoch))
+    assert list(described(guess(path))) == ["gnss"]
+    log = read(path)
+    np.testing.assert_array_equal(log.fresh, np.repeat((np.arange(ROWS) % 5 == 0)[:, None], 5, axis=1))
+
+
+def test_outputs_in_phases_are_one_sensor_only_with_an_epoch(tmp_path: Path) -> None:
+    path = save(tmp_path, receiver(LATER, LATER, LATEST, epoch=True))
+    assert {s.name: s.epoch for s in guess(path).sensors} == {"gnss": "utc"}
+    assert read(path).sensors[0].period_s == pytest.approx(0.1)
+    path = save(tmp_path, receiver(LATER, LATER, LATEST, epoch=False))
+    assert set(described(guess(path))) == {"gnss_speed", "gnss_course", "gnss", "gnss_height"}
+    log = read(path)
+    assert [s.period_s for s in log.sensors] == pytest.approx([0.1] * 4)
+    assert abs(log.fresh.sum(axis=0) - ROWS // 5).max() <= 1
+
+
+@pytest.mark.parametrize("epoch", [True, False])
+def test_a_slow_output_is_a_sensor_of_its_own(tmp_path: Path, epoch: bool) -> None:
+    path = save(tmp_path, receiver(SECONDLY, FIX, FIX, epoch))
+    assert set(described(guess(path))) == {"gnss_speed", "gnss"}
+    log = read(path)
+    assert {s.name: round(s.period_s, 3) for s in log.sensors} == {"gnss_speed": 1.0, "gnss": 0.1}
+    assert log.fresh[:, log.index("speed")].sum() == ROWS // 50
+
+
+@pytest.mark.parametrize("epoch", [True, False])
+def test_a_coarse_output_stays_with_its_receiver(tmp_path: Path, epoch: bool) -> None:
+    table = receiver(FIX, FIX, FIX, epoch)
+    table["altitude"] = np.round(120 + 3 * np.sin(TIME / 3))[FIX]  # the same for many fixes, never for as many
+    path = save(tmp_path, table)
+    assert list(described(guess(path))) == ["gnss"]
+    log = read(path)
+    assert log.fresh[:, log.index("altitude")].sum() == ROWS // 5
+
+
+def test_a_heading_that_comes_with_each_row_is_not_the_receivers(tmp_path: Path) -> None:
+    path = save(tmp_path, receiver(FIX, np.arange(ROWS), FIX, epoch=True))
+    assert set(described(guess(path))) == {"gnss", "gnss_course"}
+    assert {s.name: s.held for s in read(path).sensors} == {"gnss": True, "gnss_course": False}
 
 
 @pytest.mark.parametrize(("gravity", "unit"), [(1.0, "g"), (9.80665, "m/s^2")])
@@ -154,8 +219,9 @@ def test_roll_and_pitch_are_watched_unless_they_wrap(tmp_path: Path) -> None:
         "pitch": (RANDOM.normal(size=ROWS) * 3) % 360,
         "yaw": HEADING,
     }
-    watched = {s.name: s.watch for s in guess(save(tmp_path, table)).sensors}
-    assert watched == {"attitude": True, "heading": False}
+    vehicle = guess(save(tmp_path, table))
+    assert list(described(vehicle)) == ["attitude"]
+    assert blind(vehicle) == {"attitude.pitch", "attitude.yaw"}
 
 
 def test_unknown_names_are_kept_and_what_wanders_is_not_watched(tmp_path: Path) -> None:
@@ -168,7 +234,8 @@ def test_unknown_names_are_kept_and_what_wanders_is_not_watched(tmp_path: Path) 
         "same": np.full(ROWS, 2.5),
     }
     vehicle = guess(save(tmp_path, table))
-    assert {s.name: s.watch for s in vehicle.sensors} == {"flux": True, "charge": False}
+    assert set(described(vehicle)) == {"flux", "charge"}
+    assert blind(vehicle) == {"charge.charge"}
     assert {column for column, _ in vehicle.files[0].left_out} == {"gear", "odometer", "same"}
 
 

@@ -40,14 +40,14 @@ def test_dresden(real_data: Path) -> None:
         want = np.array([float(cell) for cell in raw[name]]) * factor
         np.testing.assert_allclose(log.value[:, log.index(channel.get(name, name))], want, rtol=1e-12, err_msg=name)
     new = np.array([True] + [a != b for a, b in zip(raw["time"][1:], raw["time"][:-1], strict=True)])
-    for name in ("gnss.speed", "gnss_course.course", "gnss_position.latitude", "gnss_position.altitude"):
+    for name in ("gnss.speed", "gnss.course", "gnss.latitude", "gnss.altitude"):
         np.testing.assert_array_equal(log.fresh[:, log.index(name)], new, err_msg=name)
     assert log.fresh[:, log.of("gyro")].all()
     sensors = {sensor.name: sensor for sensor in log.sensors}
     assert sensors["gnss"].held
-    assert sensors["gnss"].watch
     assert sensors["gnss"].period_s == pytest.approx(0.1, rel=0.01)
-    assert not sensors["gnss_position"].watch
+    assert [c.name for c in log.channels if c.watch and c.sensor in ("attitude", "gnss")] == ["roll", "pitch", "speed"]
+    assert list(sensors) == ["accelerometer", "gyro", "attitude", "gnss"]
     assert not sensors["accelerometer"].held
     assert any("14 gaps" in note for note in log.notes)
     assert any("jitters" in note for note in log.notes)
@@ -79,7 +79,6 @@ def test_drive_0708(real_data: Path) -> None:
     np.testing.assert_allclose(log.value[tick, log.index("gnss.north")], np.array([float(r[15]) for r in rows])[inside])
     assert np.isnan(log.value[~fresh, log.index("gnss.north")]).all()
     assert {s.name: round(s.period_s, 3) for s in log.sensors} == {
-        "gnss_position": 0.25,
         "gnss": 0.25,
         "accelerometer": 0.01,
         "gyro": 0.01,

@@ -34,8 +34,8 @@ def test_a_solution_file(tmp_path: Path, clock: str, first: str, second: str, ah
     assert log.epoch_s == pytest.approx(START - ahead, abs=1e-6)
     np.testing.assert_allclose(log.time, [0, 0.25], atol=1e-6)
     assert {channel.path for channel in log.channels} >= {
-        "gnss_position.latitude",
-        "gnss_position.longitude",
+        "gnss.latitude",
+        "gnss.longitude",
         "gnss.north",
     }
     np.testing.assert_allclose(np.degrees(log.value[:, log.index("latitude")]), [40.0966268, 40.0966270], rtol=1e-14)

@@ -24,7 +24,14 @@ keys = names.filter(lambda name: "." not in name)
 reasons = st.text(st.characters(exclude_categories=("Cs", "Cc", "Zl", "Zp")), max_size=8)
 finite = st.floats(allow_nan=False, allow_infinity=False)
 channels = st.builds(
-    ChannelEntry, keys, names, st.sampled_from(sorted(UNITS)), st.none() | finite, st.none() | names, why=reasons
+    ChannelEntry,
+    keys,
+    names,
+    st.sampled_from(sorted(UNITS)),
+    st.none() | finite,
+    st.none() | names,
+    st.booleans(),
+    why=reasons,
 )
 
 
@@ -47,7 +54,6 @@ def vehicles(draw: st.DrawFn) -> VehicleFile:
         st.sampled_from([file.name for file in files]),
         st.booleans(),
         st.none() | names,
-        st.booleans(),
         st.none() | finite,
         why=reasons,
     )
@@ -143,4 +149,16 @@ def test_the_description_of_the_format_is_of_the_format() -> None:
     example = (vehicle_module.__doc__ or "").split("\n\n", 1)[1]
     vehicle = VehicleFile.parse(example)
     assert VehicleFile.parse(vehicle.to_toml()) == vehicle
-    assert vehicle.sensors[0].channels[2].epoch == "far_time"
+    assert vehicle.sensors[0].channels[3].epoch == "far_time"
+    assert [channel.watch for channel in vehicle.sensors[0].channels] == [True, False, True, True]
+
+
+def test_a_sensor_says_watch_for_all_of_its_channels() -> None:
+    text = GOOD.replace("[sensor.gyro.channel]", "[sensor.gyro]\nwatch = false\n[sensor.gyro.channel]")
+    text += 'y = { column = "wy" }\nz = { column = "wz", watch = true }\n'
+    vehicle = VehicleFile.parse(text)
+    assert [channel.watch for channel in vehicle.sensors[0].channels] == [False, False, True]
+    assert vehicle.to_toml().count("watch = false }") == 2
+    none = VehicleFile.parse(text.replace("watch = true", "watch = false"))
+    assert none.to_toml().count("watch") == 1
+    assert VehicleFile.parse(none.to_toml()) == none

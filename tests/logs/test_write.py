@@ -25,11 +25,11 @@ def log_of(rows: int = 400, held_epoch: bool = True, epoch_s: float | None = 1.7
         fresh,
         (
             Channel("x", "gyro", "deg/s"),
-            Channel("y", "gyro", "rad/s"),
+            Channel("y", "gyro", "rad/s", watch=False),
             Channel("speed", "gnss", "km/h"),
-            Channel("range", "uwb", "mm"),
+            Channel("range", "uwb", "mm", watch=False),
         ),
-        (Sensor("gyro", 0.02), Sensor("gnss", 0.1, held=True), Sensor("uwb", 0.14, watch=False)),
+        (Sensor("gyro", 0.02), Sensor("gnss", 0.1, held=True), Sensor("uwb", 0.14)),
         name="käse & co",
         epoch_s=epoch_s,
     )

@@ -17,7 +17,7 @@ def sweep(
 ) -> tuple[Fault, ...]:
     """Every kind on every channel, at the sizes of `SIZES`, not yet scheduled (a short is a single spike).
 
-    `channels`: paths such as `gyro.z`; None takes all channels of the sensors that a method may judge.
+    `channels`: paths such as `gyro.z`; None takes all that a method may judge.
 
     Raises:
         FaultError: an unknown kind.
@@ -25,8 +25,7 @@ def sweep(
     """
     if unknown := [kind for kind in kinds if kind not in KINDS]:
         raise FaultError(f"Fault kind '{unknown[0]}' is unknown; take one of {', '.join(KINDS)}.")
-    watched = {sensor.name for sensor in log.sensors if sensor.watch}
-    paths = [c.path for c in log.channels if c.sensor in watched] if channels is None else channels
+    paths = [c.path for c in log.channels if c.watch] if channels is None else channels
     struck = [log.channels[log.index(path)] for path in paths]
     return tuple(
         Fault(k, c.sensor, c.name, 0.0, 0.0 if k == "short" else duration_s, SIZES[k], sigmas=k in OFFSETS)

@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class ChannelEntry:
-    """One column that is a channel. `missing`: the number that stands for no value."""
+    """One column that is a channel. `missing`: the number that stands for no value. `watch`: may it be judged."""
 
     name: str
     column: str
     unit: str = ""
     missing: float | None = None
     epoch: str | None = None
+    watch: bool = True
     why: str = field(default="", compare=False)
 
 
@@ -24,7 +25,6 @@ class SensorEntry:
     file: str = "log"
     held: bool = False
     epoch: str | None = None
-    watch: bool = True
     period_s: float | None = None
     why: str = field(default="", compare=False)
 

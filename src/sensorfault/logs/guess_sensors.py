@@ -4,16 +4,14 @@ import re
 from collections.abc import Sequence
 
 import numpy as np
-import polars as pl
 
 from sensorfault.logs import guess_units as units
 from sensorfault.logs.clock import Clock
 from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.guess_columns import Column
-from sensorfault.logs.held import changes, looks_held, repeats, share_repeated
+from sensorfault.logs.guess_devices import Device, find_devices
 from sensorfault.logs.source import Source
 from sensorfault.logs.units import to_si
-from sensorfault.logs.words import read_name
 
 _UNWATCHED = {
     "position": "a position is not stationary: only its silence is noticed",
@@ -27,13 +25,8 @@ _USUAL_UNIT = {
     "magnetometer": "uT", "velocity": "m/s", "airspeed": "m/s", "local_position": "m", "range": "m", "depth": "m",
     "barometer": "hPa",
 }  # fmt: skip
-_IN_GNSS = {
-    "speed": "gnss",
-    "velocity": "gnss",
-    "heading": "gnss_course",
-    "position": "gnss_position",
-    "height": "gnss_position",
-}
+_FROM_GNSS = ("speed", "velocity", "position", "height")  # and a heading that is a course
+_COURSES = ("course", "heading", "track")
 _NO_VALUE = -1.0  # a usual mark for "no value" among lengths and the like
 _WANDERS = 3.0  # halves whose levels differ by more than so many spreads are of something that wanders
 
@@ -42,11 +35,10 @@ def guess_sensors(source: Source, columns: Sequence[Column], clock: Clock) -> li
     """The sensors of one file."""
     has_position = any(column.meaning.kind == "position" for column in columns)
     place = _place_rad(columns)
-    groups: dict[str, list[Column]] = {}
+    parts: dict[str, list[Column]] = {}
     for column in columns:
-        kind = _kind(column)
-        groups.setdefault(_sensor_name(column, kind, columns, has_position), []).append(column)
-    return [_sensor(name, group, source, clock, place) for name, group in groups.items()]
+        parts.setdefault(_part(column, columns, has_position), []).append(column)
+    return [_sensor(device, clock, place) for device in find_devices(parts, source, clock)]
 
 
 def _kind(column: Column) -> str:
@@ -57,45 +49,42 @@ def _kind(column: Column) -> str:
     return kind
 
 
-def _sensor_name(column: Column, kind: str, columns: Sequence[Column], has_position: bool) -> str:
-    meaning = column.meaning
+def _part(column: Column, columns: Sequence[Column], has_position: bool) -> str:
+    """What a column is a part of; parts that come together become one sensor."""
+    meaning, kind = column.meaning, _kind(column)
     if not kind:
         return re.sub(r"_?\d+$", "", meaning.axis) or meaning.axis
     alike = {other.meaning.stem for other in columns if other.meaning.kind == meaning.kind}
-    course = kind != "heading" or meaning.axis in ("course", "heading", "track")
-    if has_position and kind in _IN_GNSS and course and len(alike) == 1:
-        return _IN_GNSS[kind]
+    course = kind == "heading" and meaning.axis in _COURSES
+    if has_position and (course or kind in _FROM_GNSS) and len(alike) == 1:
+        return "gnss_course" if course else f"gnss_{kind}"
     if meaning.stem and (len(alike) > 1 or kind == "velocity"):
         return meaning.stem if kind == "velocity" else f"{meaning.stem}_{kind}"
     return kind
 
 
-def _sensor(name: str, group: list[Column], source: Source, clock: Clock, place_rad: np.ndarray | None) -> SensorEntry:
-    kind = _kind(group[0])
-    value = np.column_stack([column.value for column in group])
+def _sensor(device: Device, clock: Clock, place_rad: np.ndarray | None) -> SensorEntry:
+    group = np.column_stack([column.value for column in device.columns])
     channels, seen = [], set()
-    for i, column in enumerate(group):
-        unit, why = _unit(column, value, clock, place_rad)
-        channel = column.meaning.axis if column.meaning.axis not in seen else column.name
-        channel = re.sub(r"\W+", "_", channel)
-        seen.add(channel)
-        channels.append(ChannelEntry(channel, column.name, unit, _missing_mark(value[:, i], kind), why=why))
-    held = looks_held(value) or all(looks_held(channel[:, None]) for channel in value.T)
-    epoch = _epoch(source, value, clock) if held else None
-    reasons = [
-        f"{share_repeated(value):.0%} of the rows repeat" if held else "",
-        f"{epoch} changes with it" if epoch else "",
-    ]
-    watch = kind not in _UNWATCHED and not (kind == "" and _wanders(value))
-    reasons.append("" if watch else _UNWATCHED.get(kind, "its level wanders: only its silence is noticed"))
-    return SensorEntry(
-        name,
-        tuple(channels),
-        held=held,
-        epoch=epoch,
-        watch=watch,
-        why="; ".join(reason for reason in reasons if reason),
-    )
+    for column in device.columns:
+        unit, why = _unit(column, group, clock, place_rad)
+        name = re.sub(r"\W+", "_", column.meaning.axis if column.meaning.axis not in seen else column.name)
+        seen.add(name)
+        blind = _blind(column)
+        why = "; ".join(reason for reason in (why, blind) if reason)
+        missing = _missing_mark(column.value, _kind(column))
+        channels.append(ChannelEntry(name, column.name, unit, missing, watch=not blind, why=why))
+    came = device.delivery
+    reasons = [f"{came.old:.0%} of the rows repeat"] if came.held else []
+    reasons += [f"{came.epoch} changes with it"] if came.epoch else []
+    return SensorEntry(device.name, tuple(channels), held=came.held, epoch=came.epoch, why="; ".join(reasons))
+
+
+def _blind(column: Column) -> str:
+    """Why the column's values cannot be judged; empty if they can."""
+    kind = _kind(column)
+    wanders = kind == "" and _wanders(column.value[np.isfinite(column.value)])
+    return _UNWATCHED.get(kind, "its level wanders: only its silence is noticed" if wanders else "")
 
 
 def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray | None) -> tuple[str, str]:
@@ -141,33 +130,8 @@ def _missing_mark(value: np.ndarray, kind: str) -> float | None:
     return None
 
 
-def _epoch(source: Source, value: np.ndarray, clock: Clock) -> str | None:
-    """A time or sequence column that changes as often as the held sensor's liveliest channel, or somewhat oftener."""
-    moved = max(int((~repeats(channel[:, None])).sum()) for channel in value.T)
-    best: tuple[float, str] | None = None
-    for name in source.frame.columns:
-        column = source.frame[name]
-        if read_name(name).kind != "time" or not column.dtype.is_numeric():
-            continue
-        reading = column.cast(pl.Float64).fill_null(np.nan).to_numpy()[clock.rows]
-        ratio = float(changes(reading).sum()) / max(moved, 1)
-        rising = np.nanmin(np.diff(reading), initial=0.0) >= 0
-        if rising and 0.95 < ratio < 2.0 and (best is None or ratio < best[0]) and not _of_the_rows(reading):
-            best = ratio, name
-    return best[1] if best else None
-
-
-def _of_the_rows(reading: np.ndarray) -> bool:
-    """Whether a column changes in nearly every row: a clock of the rows, not of the measurements."""
-    return float(changes(reading).mean()) > 0.9
-
-
-def _wanders(value: np.ndarray) -> bool:
-    """Whether any channel's level differs between the halves by more than its spread within them."""
-    return any(_steps(channel[np.isfinite(channel)]) for channel in value.T)
-
-
-def _steps(channel: np.ndarray) -> bool:
+def _wanders(channel: np.ndarray) -> bool:
+    """Whether its level differs between the halves by more than its spread within them."""
     first, second = np.array_split(channel, 2)
     if not len(first) or not len(second):
         return False

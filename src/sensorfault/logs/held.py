@@ -27,6 +27,12 @@ def share_repeated(value: Float[np.ndarray, "T C"]) -> float:
     return float(repeats(value).sum()) / present if present else 0.0
 
 
+def share_old(value: Float[np.ndarray, "T C"], fresh: Bool[np.ndarray, "T C"]) -> float:
+    """Share of the rows with a value that bring no new measurement of any channel."""
+    present = int(_any_finite(value).sum())
+    return 1 - float(_any(fresh).sum()) / present if present else 0.0
+
+
 def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
     """Whether the rows are a held sensor's: many measurements last for several rows, all for about as many.
 

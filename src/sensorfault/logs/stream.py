@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
-from sensorfault.logs.held import fresh_rows, looks_held, share_repeated, usual_period_s
+from sensorfault.logs.held import fresh_rows, looks_held, share_old, share_repeated, usual_period_s
 from sensorfault.logs.rtklib import read_tag
 from sensorfault.logs.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
@@ -61,7 +61,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         )
     time = clock.time * rate
     gaps = _Gaps(source)
-    channels = tuple(Channel(c.name, s.name, c.unit) for s in sensors for c in s.channels)
+    channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in sensors for c in s.channels)
     value = np.empty((len(time), len(channels)))
     fresh = np.empty(value.shape, bool)
     described, at = [], 0
@@ -71,8 +71,8 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
             value[:, i] = _channel(source, channel, clock, gaps, sensor.period_s is not None)
         fresh[:, own] = _fresh(source, sensor, value[:, own], clock)
         period = sensor.period_s or usual_period_s(time, fresh[:, own])
-        described.append(Sensor(sensor.name, period, sensor.held, sensor.watch))
-        notes += _held_note(source.path.name, sensor, value[:, own], period)
+        described.append(Sensor(sensor.name, period, sensor.held))
+        notes += _held_note(source.path.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
     notes += gaps.notes()
     return Stream(source.path.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
@@ -136,11 +136,11 @@ def _epoch(source: Source, name: str | None, clock: Clock) -> np.ndarray | None:
     return epoch
 
 
-def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, period: float) -> list[str]:
+def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, fresh: np.ndarray, period: float) -> list[str]:
     if sensor.held and not np.isfinite(period):
         return [f"{name}: sensor '{sensor.name}' is held, and fewer than two measurements came."]
     if sensor.held:
-        share = share_repeated(value)
+        share = share_old(value, fresh)
         return [
             f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat, a measurement comes every "
             f"{period:.3g} s."

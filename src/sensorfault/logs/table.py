@@ -17,11 +17,16 @@ class LogError(ValueError):
 
 @dataclass(frozen=True)
 class Channel:
-    """One number of one sensor. `unit` is what a person reads; values in a Log are SI."""
+    """One number of one sensor.
+
+    `unit` is what a person reads; values in a Log are SI. `watch`: whether a method may judge them (a latitude is not a
+    stationary signal; its silence is still noticed).
+    """
 
     name: str
     sensor: str
     unit: str = ""
+    watch: bool = True
 
     @property
     def path(self) -> str:
@@ -34,14 +39,12 @@ class Sensor:
     """A device that delivers its channels together.
 
     `period_s`: the usual time between two new measurements. `held`: the file repeats the last measurement until the
-    next (zero-order hold), so a repeated row says nothing. `watch`: whether a method may judge its values (a latitude
-    is not a stationary signal; its silence is still noticed).
+    next (zero-order hold), so a repeated row says nothing.
     """
 
     name: str
     period_s: float
     held: bool = False
-    watch: bool = True
 
 
 @dataclass(frozen=True)

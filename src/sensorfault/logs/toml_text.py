@@ -31,7 +31,8 @@ def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
         lines.append("held = true")
     if sensor.epoch is not None:
         lines.append(f"epoch = {quote(sensor.epoch)}")
-    if not sensor.watch:
+    blind = not any(channel.watch for channel in sensor.channels)  # said once for all of its channels
+    if blind:
         lines.append("watch = false")
     if sensor.period_s is not None:
         lines.append(f"period_s = {sensor.period_s!r}")
@@ -40,6 +41,7 @@ def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
         cell = f"column = {quote(channel.column)}, unit = {quote(channel.unit)}"
         cell += f", missing = {channel.missing!r}" if channel.missing is not None else ""
         cell += f", epoch = {quote(channel.epoch)}" if channel.epoch is not None else ""
+        cell += "" if channel.watch or blind else ", watch = false"
         lines.append(f"{key_of(channel.name)} = {{ {cell} }}" + remark(channel.why))
     return lines
 

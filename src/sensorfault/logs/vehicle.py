@@ -16,10 +16,11 @@ tag = "imu.csv.tag"        # optional: RTKLIB's time tag, which ties a counter t
 file = "log"               # may be left out if there is one file
 held = true                # the file repeats the last measurement until the next
 epoch = "time"             # optional: a column that changes exactly when a measurement arrives
-watch = true               # false: values are not judged, only silence is noticed
+watch = true               # false: no channel of it is judged, only its silence is noticed
 period_s = 0.1             # optional: the usual time between measurements, where the log cannot tell
 [sensor.gnss.channel]
 speed = { column = "speed", unit = "km/h" }
+course = { column = "course", unit = "deg", watch = false }  # this channel alone is not judged
 range = { column = "range", unit = "m", missing = -1 }    # -1 stands for no value
 far = { column = "far", unit = "m", epoch = "far_time" }  # a channel that arrives at its own times
 """
@@ -130,7 +131,8 @@ def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> Sensor
         raise LogError(f"{table.where}: [{table.path}] file = '{file}' is not described; take one of {listed}.")
     if "." in name:
         raise LogError(f"{table.where}: the sensor name '{name}' has a dot, which parts sensor from channel; take '_'.")
-    channels = tuple(_channel(key, inner) for key, inner in table.tables("channel"))
+    watch = table.flag("watch", True)
+    channels = tuple(_channel(key, inner, watch) for key, inner in table.tables("channel"))
     if not channels:
         raise LogError(f"{table.where}: [{table.path}.channel] is empty; name at least one channel.")
     return SensorEntry(
@@ -139,13 +141,13 @@ def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> Sensor
         file,
         table.flag("held", False),
         table.text("epoch"),
-        table.flag("watch", True),
         table.number("period_s"),
     )
 
 
-def _channel(name: str, table: TomlTable) -> ChannelEntry:
-    table.only("column", "unit", "missing", "epoch")
+def _channel(name: str, table: TomlTable, watch: bool) -> ChannelEntry:
+    """`watch`: what its sensor says, where it says nothing itself."""
+    table.only("column", "unit", "missing", "epoch", "watch")
     column, unit = table.text("column"), table.text("unit") or ""
     if column is None:
         raise LogError(f'{table.where}: [{table.path}] names no column; write column = "...".')
@@ -153,4 +155,4 @@ def _channel(name: str, table: TomlTable) -> ChannelEntry:
         raise LogError(
             f"{table.where}: [{table.path}] unit = '{unit}' is unknown; take one of {', '.join(filter(None, UNITS))}."
         )
-    return ChannelEntry(name, column, unit, table.number("missing"), table.text("epoch"))
+    return ChannelEntry(name, column, unit, table.number("missing"), table.text("epoch"), table.flag("watch", watch))

@@ -64,7 +64,11 @@ def as_table(log: Log, file_name: str | None = None) -> tuple[pl.DataFrame, Vehi
                 counts += [_count(name, log.fresh[:, i]) for i, name in channel_epoch.items()]
         channels = tuple(
             ChannelEntry(
-                log.channels[i].name, log.channels[i].path, log.channels[i].unit, epoch=channel_epoch[i] or None
+                log.channels[i].name,
+                log.channels[i].path,
+                log.channels[i].unit,
+                epoch=channel_epoch[i] or None,
+                watch=log.channels[i].watch,
             )
             for i in columns
         )
@@ -77,7 +81,7 @@ def as_table(log: Log, file_name: str | None = None) -> tuple[pl.DataFrame, Vehi
 
 def _entry(sensor: Sensor, channels: tuple[ChannelEntry, ...], epoch: str | None) -> SensorEntry:
     period = sensor.period_s if np.isfinite(sensor.period_s) else None
-    return SensorEntry(sensor.name, channels, held=sensor.held, epoch=epoch, watch=sensor.watch, period_s=period)
+    return SensorEntry(sensor.name, channels, held=sensor.held, epoch=epoch, period_s=period)
 
 
 def _count(name: str, arrived: np.ndarray) -> pl.Series:

@@ -12,13 +12,12 @@ def watchable(log: Log) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
     Raises:
         LogError: nothing is left to watch.
     """
-    sensors = {sensor.name: sensor for sensor in log.sensors}
     measured = log.fresh & np.isfinite(log.value)
     often = measured.mean(axis=0) >= 0.5
     watched = np.zeros(len(log.channels), bool)
     reasons: dict[str, str] = {}
     for i, channel in enumerate(log.channels):
-        if not sensors[channel.sensor].watch:
+        if not channel.watch:
             reasons[channel.path] = "vehicle.toml says watch = false"
         elif not often[i]:
             reasons[channel.path] = "slower than the clock"

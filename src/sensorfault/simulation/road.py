@@ -14,11 +14,11 @@ FASTEST = 18.0  # no drive gets further in a second [m]
 CHANNELS = (
     *(Channel(axis, "gyro", "deg/s") for axis in "xyz"),
     *(Channel(axis, "accelerometer", "m/s^2") for axis in "xyz"),
-    Channel("latitude", "gnss", "deg"),
-    Channel("longitude", "gnss", "deg"),
-    Channel("altitude", "gnss", "m"),
+    Channel("latitude", "gnss", "deg", watch=False),
+    Channel("longitude", "gnss", "deg", watch=False),
+    Channel("altitude", "gnss", "m", watch=False),
     Channel("speed", "gnss", "km/h"),
-    Channel("course", "gnss", "deg"),
+    Channel("course", "gnss", "deg", watch=False),
 )
 
 
@@ -79,7 +79,7 @@ def drive(
         sensors=(
             Sensor("gyro", 1 / imu_hz),
             Sensor("accelerometer", 1 / imu_hz),
-            Sensor("gnss", 1 / gnss_hz, held=True, watch=False),
+            Sensor("gnss", 1 / gnss_hz, held=True),
         ),
         name=f"drive {seed}",
     )
