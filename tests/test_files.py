@@ -5,7 +5,7 @@ import stat
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sensorfault.files import appearing
@@ -90,6 +90,7 @@ def test_a_writer_that_replaces_the_temporary_file_itself(tmp_path: Path) -> Non
 
 
 @given(st.text(alphabet="abc. ä-_%", min_size=1, max_size=30).filter(lambda name: name.strip(". ")))
+@settings(deadline=None)
 def test_any_name_will_do(tmp_path_factory: pytest.TempPathFactory, name: str) -> None:
     folder = tmp_path_factory.mktemp("any", numbered=True)
     with appearing(folder / name) as temporary:

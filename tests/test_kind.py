@@ -30,6 +30,7 @@ def noise(rng: np.random.Generator, n: int) -> np.ndarray:
 
 
 @given(st.floats(5, 1e4), SIGNS, st.integers(1, 2))
+@settings(deadline=None)
 def test_short(size: float, sign: float, n: int) -> None:
     assert kind(np.full(n, sign * size * SIGMA)) == "short"
 

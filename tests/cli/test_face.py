@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 import click
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -110,21 +109,18 @@ def test_the_commands_of_the_readme_are_commands() -> None:
         assert {word for word in words if word.startswith("--")} <= named, command
 
 
-def test_the_python_of_the_readme_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """On a drive of 150 s whose gyro is stuck for three of the last thirty."""
+def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
+    """On a drive of 150 s whose gyro is stuck for three of the last thirty; by itself, as a reader would run it."""
     healthy = fitted.rig().between(end_s=150.0)
     log = inject(healthy, [Fault("jam", "gyro", "y", 130.0, 3.0)]).log
     write_csv(tmp_path / "drive.csv", log)
-    monkeypatch.chdir(tmp_path)
     (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    space: dict[str, object] = {"values": log.value[6001]}
-    exec(compile(code, "README.md", "exec"), space)
-    said = capsys.readouterr().out.splitlines()
+    code = f"values = {log.value[6001].tolist()}\n" + code
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    said = done.stdout.splitlines()
     assert any(line.split()[1:] == ["gyro", "y", "jam"] for line in said)
     assert said[-1].split()[0] in ("ok", "unknown", "fault")
-    assert np.isfinite(float(said[0].split()[0]))
 
 
 def test_every_public_name_is_there() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evaluation.told import TICK_S, detection, event, quiet
@@ -170,12 +170,14 @@ SPANS = st.lists(st.tuples(st.integers(0, 50), st.integers(0, 50)).map(sorted).m
 
 
 @given(SPANS)
+@settings(deadline=None)
 def test_the_union_of_windows_by_counting_seconds(spans: list[tuple[int, int]]) -> None:
     seconds = {second for start, end in spans for second in range(start, end)}
     assert covered_s([(float(start), float(end)) for start, end in spans]) == len(seconds)
 
 
 @given(st.lists(st.floats(0, 990), max_size=20), st.lists(st.tuples(st.floats(0, 900), st.floats(0, 90)), max_size=6))
+@settings(deadline=None)
 def test_each_event_is_a_finding_or_a_false_alarm(starts: list[float], spans: list[tuple[float, float]]) -> None:
     """By brute force: an event is false exactly if it begins within no fault; a fault is found exactly if one does."""
     faults = [Fault("bias", "gyro", "x", start, length, 1.0) for start, length in spans]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.metrics import average_precision_score, roc_auc_score
 
@@ -19,18 +19,21 @@ def arrays(samples: list[tuple[float, bool]]) -> tuple[np.ndarray, np.ndarray]:
 
 
 @given(BOTH)
+@settings(deadline=None)
 def test_auc_is_scikit_learns(samples: list[tuple[float, bool]]) -> None:
     score, faulty = arrays(samples)
     assert auc(score, faulty) == pytest.approx(roc_auc_score(faulty, score), abs=1e-12)
 
 
 @given(BOTH)
+@settings(deadline=None)
 def test_average_precision_is_scikit_learns(samples: list[tuple[float, bool]]) -> None:
     score, faulty = arrays(samples)
     assert auc_pr(score, faulty) == pytest.approx(average_precision_score(faulty, score), abs=1e-12)
 
 
 @given(BOTH)
+@settings(deadline=None)
 def test_auc_is_the_chance_of_a_right_order(samples: list[tuple[float, bool]]) -> None:
     score, faulty = arrays(samples)
     pairs = [(p > n) + 0.5 * (p == n) for p in score[faulty] for n in score[~faulty]]
@@ -38,6 +41,7 @@ def test_auc_is_the_chance_of_a_right_order(samples: list[tuple[float, bool]]) -
 
 
 @given(BOTH)
+@settings(deadline=None)
 def test_only_the_order_counts(samples: list[tuple[float, bool]]) -> None:
     score, faulty = arrays(samples)
     rank = np.unique(score, return_inverse=True)[1].astype(float)
