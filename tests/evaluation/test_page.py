@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from sensorfault.detection import Detection, Trace
-from sensorfault.evaluation import page as page_module
 from sensorfault.evaluation.page import figures, write_page
 from sensorfault.evaluation.page_lines import extremes, line, near, runs
 from sensorfault.evaluation.page_signals import replaced, stale
@@ -425,7 +424,7 @@ def test_a_page_that_fails_leaves_the_old_one(tmp_path, monkeypatch):
     def broken(*_: object) -> None:
         raise OSError("disk full")
 
-    monkeypatch.setattr(page_module.os, "replace", broken)
+    monkeypatch.setattr("os.replace", broken)
     with pytest.raises(OSError, match="disk full"):
         write_page(drive(), path)
     assert path.read_text() == "old"

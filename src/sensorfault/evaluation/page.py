@@ -1,7 +1,6 @@
 """The report page: one HTML file that opens anywhere, offline, and asks nobody for anything."""
 
 import json
-import os
 from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
@@ -15,6 +14,7 @@ from sensorfault.evaluation.page_signals import signals
 from sensorfault.evaluation.page_verdicts import verdicts
 from sensorfault.evaluation.page_words import SILENCE_ONLY, blind, event_table, facts, result, sentences, truth_table
 from sensorfault.faults.fault import Fault
+from sensorfault.files import appearing
 
 POINTS = 300_000  # all lines together, and at most as many again around the events: 3 to 7 MB
 
@@ -43,13 +43,9 @@ def write_page(
         title: headline, the log's name by default.
         summary: how the limits came about, one sentence each.
     """
-    path = Path(path)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_text(page(detection, truth, title, summary), encoding="utf-8")
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    text = page(detection, truth, title, summary)
+    with appearing(Path(path)) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def page(detection: Detection, truth: Sequence[Fault], title: str | None, summary: Sequence[str]) -> str:

@@ -1,6 +1,5 @@
 """Write a log so that it reads back the same: a table, and beside it the vehicle file that describes it."""
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import numpy as np
 import polars as pl
 from jaxtyping import Bool
 
+from sensorfault.files import appearing
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows
 from sensorfault.logs.place import VEHICLE
@@ -37,8 +37,8 @@ def write(log: Log, path: str | Path) -> Path:
         raise LogError(f"{path}: a log is written as {' or '.join(writers)}, not as '{path.suffix}'; change the name.")
     beside = path.with_suffix(f".{VEHICLE}")
     text = vehicle.to_toml()
-    _whole(path, writer)
-    _whole(beside, lambda file: file.write_text(text, encoding="utf-8"))
+    _appear(path, writer)
+    _appear(beside, lambda file: file.write_text(text, encoding="utf-8"))
     return beside
 
 
@@ -90,13 +90,9 @@ def _count(name: str, arrived: np.ndarray) -> pl.Series:
     return count.set(count == 0, None)
 
 
-def _whole(path: Path, writer: Callable[[Path], object]) -> None:
-    """Write to a file beside, then rename: whoever looks finds the old file or the new one, whole."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
+def _appear(path: Path, writer: Callable[[Path], object]) -> None:
     try:
-        writer(partial)
-        os.replace(partial, path)
+        with appearing(path) as temporary:
+            writer(temporary)
     except (OSError, pl.exceptions.PolarsError) as error:
         raise LogError(f"{path}: cannot be written ({error}); look at the folder and its rights.") from None
-    finally:
-        partial.unlink(missing_ok=True)
