@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sensorfault.logs import VehicleFile, read
-from sensorfault.logs.csv import read_csv
+from sensorfault.logs.readers.csv import read_csv
 
 ROWS = [(0.0, 1.5, -2.0), (0.02, 1.25, -2.5), (0.04, 1e-3, 3e4)]
 VEHICLE = """

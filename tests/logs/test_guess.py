@@ -7,7 +7,7 @@ import polars as pl
 import pytest
 
 from sensorfault.logs import LogError, VehicleFile, guess, read
-from sensorfault.logs.words import read_name
+from sensorfault.logs.guess.words import read_name
 
 ROWS = 4000
 TIME = np.arange(ROWS) * 0.02

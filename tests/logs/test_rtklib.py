@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sensorfault.logs import LogError, VehicleFile, read
-from sensorfault.logs.gps_time import leap_seconds, unix_from_gps_week
+from sensorfault.logs.readers.gps_time import leap_seconds, unix_from_gps_week
 
 HEAD = (
     "% program   : RTKPOST ver.2.4.3\n% pos mode  : kinematic\n%\n"

@@ -8,7 +8,7 @@ import polars as pl
 from jaxtyping import Float, Int
 
 from sensorfault.logs.phrase import counted, times
-from sensorfault.logs.source import Source
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
 GAP = 3.0  # a gap is longer than so many usual periods

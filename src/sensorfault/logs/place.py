@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.formats import READERS
+from sensorfault.logs.readers.formats import READERS
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 

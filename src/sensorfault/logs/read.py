@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from sensorfault.logs.clock import is_unix
-from sensorfault.logs.formats import read_source
 from sensorfault.logs.guess import guess
 from sensorfault.logs.one_clock import OneClock, Resample, put_on_one_clock
 from sensorfault.logs.place import Where, find_vehicle, pair_files
+from sensorfault.logs.readers.formats import read_source
 from sensorfault.logs.stream import Stream, read_stream
 from sensorfault.logs.table import Log
 from sensorfault.logs.vehicle import VehicleFile

@@ -9,8 +9,8 @@ from jaxtyping import Bool, Float
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows, looks_held, share_old, share_repeated, usual_period_s
-from sensorfault.logs.rtklib import read_tag
-from sensorfault.logs.source import Source
+from sensorfault.logs.readers.rtklib import read_tag
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
 

@@ -6,8 +6,8 @@ from typing import Literal
 
 import polars as pl
 
-from sensorfault.logs.dialect import MISSING, Dialect, is_number, sniff
-from sensorfault.logs.source import Source
+from sensorfault.logs.readers.dialect import MISSING, Dialect, is_number, sniff
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
 _PADDING = ' \t\r"'

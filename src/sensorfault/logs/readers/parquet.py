@@ -4,7 +4,7 @@ from pathlib import Path
 
 import polars as pl
 
-from sensorfault.logs.source import Source
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
 

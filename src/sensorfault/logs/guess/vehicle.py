@@ -6,11 +6,11 @@ from pathlib import Path
 
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import FileEntry, SensorEntry
-from sensorfault.logs.formats import read_source
-from sensorfault.logs.guess_columns import measurements
-from sensorfault.logs.guess_sensors import guess_sensors
-from sensorfault.logs.guess_time import guess_time
+from sensorfault.logs.guess.columns import measurements
+from sensorfault.logs.guess.sensors import guess_sensors
+from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.place import Where, files_of
+from sensorfault.logs.readers.formats import read_source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 

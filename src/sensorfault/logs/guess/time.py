@@ -6,9 +6,9 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.clock import is_unix
-from sensorfault.logs.source import Source
+from sensorfault.logs.guess.words import read_name
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
-from sensorfault.logs.words import read_name
 
 _RISING = 0.8  # share of the steps that must be forward
 _SPAN = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}

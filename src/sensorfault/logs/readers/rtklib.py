@@ -8,8 +8,8 @@ import numpy as np
 import polars as pl
 from jaxtyping import Float
 
-from sensorfault.logs.gps_time import WEEK_S, unix_from_gps_calendar, unix_from_gps_week
-from sensorfault.logs.source import Source
+from sensorfault.logs.readers.gps_time import WEEK_S, unix_from_gps_calendar, unix_from_gps_week
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
 _FILLER = {b"", b"%", b"#"}

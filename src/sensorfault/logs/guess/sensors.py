@@ -5,12 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sensorfault.logs import guess_units as units
 from sensorfault.logs.clock import Clock
 from sensorfault.logs.entries import ChannelEntry, SensorEntry
-from sensorfault.logs.guess_columns import Column
-from sensorfault.logs.guess_devices import Device, find_devices
-from sensorfault.logs.source import Source
+from sensorfault.logs.guess import units
+from sensorfault.logs.guess.columns import Column
+from sensorfault.logs.guess.devices import Device, find_devices
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.units import to_si
 
 _UNWATCHED = {

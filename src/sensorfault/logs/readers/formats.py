@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from sensorfault.logs.csv import read_csv
-from sensorfault.logs.parquet import read_parquet
-from sensorfault.logs.rtklib import read_pos
-from sensorfault.logs.source import Source
+from sensorfault.logs.readers.csv import read_csv
+from sensorfault.logs.readers.parquet import read_parquet
+from sensorfault.logs.readers.rtklib import read_pos
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
 READERS: dict[str, Callable[[Path], Source]] = {

@@ -8,10 +8,10 @@ import polars as pl
 from jaxtyping import Bool, Float
 
 from sensorfault.logs.clock import Clock
-from sensorfault.logs.guess_columns import Column
+from sensorfault.logs.guess.columns import Column
+from sensorfault.logs.guess.words import read_name
 from sensorfault.logs.held import changes, fresh_rows, looks_held, repeats, share_old, usual_period_s
-from sensorfault.logs.source import Source
-from sensorfault.logs.words import read_name
+from sensorfault.logs.readers.source import Source
 
 _DEVICES = (  # name, the part that leads, the parts that may come with it
     ("gnss", "gnss_position", ("gnss_speed", "gnss_velocity", "gnss_course", "gnss_height")),

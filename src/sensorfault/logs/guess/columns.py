@@ -8,10 +8,10 @@ import polars as pl
 from jaxtyping import Float
 
 from sensorfault.logs.clock import Clock
-from sensorfault.logs.source import Source
+from sensorfault.logs.guess.words import Meaning, read_name
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import STANDARD_GRAVITY
-from sensorfault.logs.words import Meaning, read_name
 
 _FEW = 16
 _STEADY = 0.15  # relative spread below which three axes have a steady length

@@ -1,0 +1,5 @@
+"""Guess: what the columns of an unknown log are."""
+
+from sensorfault.logs.guess.vehicle import guess
+
+__all__ = ["guess"]
