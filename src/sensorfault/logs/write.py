@@ -95,4 +95,5 @@ def _appear(path: Path, writer: Callable[[Path], object]) -> None:
         with appearing(path) as temporary:
             writer(temporary)
     except (OSError, pl.exceptions.PolarsError) as error:
-        raise LogError(f"{path}: cannot be written ({error}); look at the folder and its rights.") from None
+        reason = getattr(error, "strerror", None) or error
+        raise LogError(f"{path}: cannot be written ({reason}); look at the folder and its rights.") from None
