@@ -431,6 +431,15 @@ def test_a_page_that_fails_leaves_the_old_one(tmp_path, monkeypatch):
     assert os.listdir(tmp_path) == ["page.html"]
 
 
+@pytest.mark.parametrize("name", ["no/such.html", "folder.html"])
+def test_a_page_that_cannot_be_there_is_named_as_the_user_did(tmp_path, name):
+    (tmp_path / "folder.html").mkdir()
+    with pytest.raises(OSError, match=r"directory") as raised:
+        write_page(drive(), tmp_path / name)
+    assert raised.value.filename == str(tmp_path / name)
+    assert os.listdir(tmp_path) == ["folder.html"]
+
+
 def test_an_hour_of_twelve_channels_is_a_small_page():
     rows = 180_000
     rng = np.random.default_rng(0)
