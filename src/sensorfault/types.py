@@ -65,13 +65,14 @@ class Evidence(NamedTuple):
     """All tests of one sample, branch by branch, as the decision sees them.
 
     `gates[b]`: whether an alarm of branch b may keep this sample out of a filter (a window's alarm may not).
-    `struck`: channels already taken out of this sample, with the accusation standing. `born`: as in Sample.
+    `certain[b]`: whether it accuses by itself, whatever the other channels say (an exact repeat does). `struck`: channels already taken out of this sample, with the accusation standing. `born`: as in Sample.
     """
 
     time: Float[Array, ""]
     scores: tuple[Score, ...]
     limits: tuple[Float[Array, " K"], ...]
     gates: tuple[bool, ...]
+    certain: tuple[bool, ...]
     struck: Bool[Array, " C"]
     born: Bool[Array, " C"]
 
@@ -79,13 +80,15 @@ class Evidence(NamedTuple):
 class Accusation(NamedTuple):
     """What a decision says of one sample.
 
-    `named`: faulty. `gated`: named, and by a test that may keep it out of a filter. `suspect`: over a limit, whether or
+    `named`: faulty. `gated`: named, and by a test that may keep it out of a filter; `certain`: by one that accuses by
+    itself. `suspect`: over a limit, whether or
     not that is a fault yet, so that nothing is learned from it. `size` ranks the accused; it is -inf for all others.
     `tested`: examined by some test. `hit`: something is wrong, whether or not it can be said on whose account.
     """
 
     named: Bool[Array, " C"]
     gated: Bool[Array, " C"]
+    certain: Bool[Array, " C"]
     suspect: Bool[Array, " C"]
     size: Float[Array, " C"]
     tested: Bool[Array, " C"]

@@ -49,7 +49,7 @@ def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], 
         residual=residual,
         branches=(
             Branch(Exchange(jnp.asarray(scaling.half)), ScaledMax(jnp.full(1, jnp.inf))),
-            Branch(Repeats(channels), Fixed(jnp.full(channels, jnp.inf))),
+            Branch(Repeats(channels), Fixed(jnp.full(channels, jnp.inf)), certain=True),
         ),
         decision=Exceed(share=1.0),
         recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(READMIT_S), channels),

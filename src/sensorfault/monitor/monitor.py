@@ -29,12 +29,14 @@ class Branch(eqx.Module):
     """One way of judging the residual: a test statistic and its threshold.
 
     `gates`: an alarm of this branch may keep the present sample out of the filter. A window's alarm must not: it is
-    about the past.
+    about the past. `certain`: it accuses by itself (an exact repeat), so all it accuses are taken out at once, before
+    the largest of the others is looked for.
     """
 
     statistic: Stage[Any, Residual, Score, Any]
     threshold: Stage[Any, tuple[Residual, Score], Float[Array, " K"], Any]
     gates: bool = eqx.field(static=True, default=True)
+    certain: bool = eqx.field(static=True, default=False)
 
 
 class MonitorState(NamedTuple):
@@ -142,8 +144,15 @@ class Monitor(eqx.Module):
             scores.append(score._replace(valid=score.valid & ~jnp.isnan(score.value) & ~jnp.isnan(limit)))
             limits.append(limit)
             pending.append((s, t))
-        gates = tuple(branch.gates for branch in self.branches)
-        evidence = Evidence(residual.time, tuple(scores), tuple(limits), gates, struck, residual.born)
+        evidence = Evidence(
+            time=residual.time,
+            scores=tuple(scores),
+            limits=tuple(limits),
+            gates=tuple(branch.gates for branch in self.branches),
+            certain=tuple(branch.certain for branch in self.branches),
+            struck=struck,
+            born=residual.born,
+        )
         told, decided = self.decision.evaluate(state.decision, evidence)
         return _Judgement(tuple(scores), tuple(limits), tuple(pending), told, decided)
 
@@ -169,9 +178,13 @@ class Monitor(eqx.Module):
         def strike(carry: _Round) -> _Round:
             told, _, struck, out, rounds = carry
             now = accused(told, out)
+            sure = now & told.certain
             worst = owner == owner[jnp.argmax(jnp.where(now, told.size, -jnp.inf))]
-            struck = struck | (now & worst)
-            out = out | (worst if self.together else now & worst)
+            taken = jnp.where(sure.any(), sure, now & worst)
+            struck = struck | taken
+            out = out | taken
+            if self.together:
+                out = out | (out[None] & (owner[:, None] == owner[None])).any(axis=1)
             again = self._judge(state, residual._replace(valid=residual.valid & ~out, out=out), struck)
             return again.told, again.decided, struck, out, rounds + 1
 

@@ -12,10 +12,11 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
     blame times score over limit. Struck channels stay accused; their size is -inf, since they are out already. Where
     a test can say nothing on whose account it is over, all it covers are suspect.
     """
-    named = gated = suspect = tested = evidence.struck
+    named = gated = certain = suspect = tested = evidence.struck
     size = jnp.full(evidence.struck.shape, -jnp.inf)
     hit = evidence.struck.any()
-    for score, limit, gates in zip(evidence.scores, evidence.limits, evidence.gates, strict=True):
+    branches = zip(evidence.scores, evidence.limits, evidence.gates, evidence.certain, strict=True)
+    for score, limit, gates, alone in branches:
         over = score.valid & (score.value > limit)
         most = score.blame.max(axis=1, keepdims=True)
         accused = over[:, None] & (score.blame > 0) & (score.blame >= share * most)
@@ -24,7 +25,8 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
         accused = accused.any(axis=0)
         named |= accused
         gated |= accused & gates
+        certain |= accused & alone
         suspect |= (over[:, None] & jnp.where(most > 0, score.blame > 0, score.covers)).any(axis=0)
         tested |= (score.valid[:, None] & score.covers).any(axis=0)
         hit |= over.any()
-    return Accusation(named, gated, suspect, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)
+    return Accusation(named, gated, certain, suspect, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)

@@ -43,6 +43,7 @@ class Persist(eqx.Module):
         told = now._replace(
             named=named,
             gated=named & now.gated,
+            certain=named & now.certain,
             size=jnp.where(named, now.size, -jnp.inf),
             hit=now.tested.any() & (jnp.bitwise_count(sample) >= self.needed),
         )
