@@ -1,6 +1,8 @@
 # Two verbs for newcomers, demo and test; each sets up what it needs in .venv.
 PYTHON ?= python3.11
 BIN := .venv/bin
+# shapes and types checked while tests run; an int will do for a float
+SHAPES := sensorfault,beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))
 
 .PHONY: demo test check real bench clean
 
@@ -8,7 +10,7 @@ demo: .venv/.installed        ## simulate a drive, let its sensors lie, find out
 	$(BIN)/sensorfault demo --out demo
 
 test: .venv/.dev              ## all tests that need nothing but this repository
-	$(BIN)/python -m pytest -n 2 -m "not real" --jaxtyping-packages=sensorfault,beartype.beartype
+	$(BIN)/python -m pytest -n 2 -m "not real" --jaxtyping-packages="$(SHAPES)"
 
 check: .venv/.dev             ## lint, types, import contract
 	$(BIN)/ruff check

@@ -268,3 +268,28 @@ def test_one_row_is_judged() -> None:
     assert len(one.log) == 1
     assert one.events == ()
     assert one.sample[0] == OK
+
+
+def without(start_s: float, end_s: float) -> Log:
+    """The unseen log with a hole in it."""
+    log = fitted.unseen()
+    kept = (log.time <= start_s) | (log.time >= end_s)
+    return replace(log, time=log.time[kept], value=log.value[kept], fresh=log.fresh[kept])
+
+
+def test_a_hole_in_the_log_is_nobodys_silence() -> None:
+    (hole,) = detect(fitted.model(), without(110.02, 115.02)).events
+    assert (hole.sensor, hole.kind, hole.start_s) == (None, "miss", pytest.approx(110.02))
+    assert detect(fitted.model(), without(110.02, 110.52)).events == ()
+
+
+def test_a_frozen_axis_accuses_nobody_else() -> None:
+    """Once: the joint test, which a frozen axis upsets too, was answered in the same round."""
+    jammed = inject(fitted.unseen(), [Fault("jam", "gyro", "y", 140.0, 5.0)]).log
+    (event,) = detect(fitted.model(), jammed).events
+    assert (event.sensor, event.channel, event.kind) == ("gyro", "y", "jam")
+
+
+def test_an_empty_log_is_a_sentence() -> None:
+    with pytest.raises(LogError, match="no rows"):
+        detect(fitted.model(), fitted.unseen().between(1e9))

@@ -128,7 +128,7 @@ def test_any_number_in_any_part_survives(limits: list[float], window: int) -> No
     odd = eqx.tree_at(
         lambda m: (m.branches[1].threshold, m.decision, m.recovery),
         monitor,
-        (Fixed(jnp.asarray(limits)), Persist(6, 1, window), Drop()),
+        (Fixed(jnp.asarray(limits)), Persist(8, 1, window), Drop()),
     )
     with TemporaryDirectory() as folder:
         path = Path(folder) / "odd.sensorfault"

@@ -7,7 +7,7 @@ import pytest
 
 from sensorfault.events import Event
 from sensorfault.run import Now
-from sensorfault.tracker import QUIET_S, Tracker, Watch
+from sensorfault.tracker import GAP_S, QUIET_S, Tracker, Watch
 from sensorfault.types import FAULT, OK, UNKNOWN
 
 TICK_S = 0.02
@@ -20,6 +20,8 @@ WATCH = Watch(
     period_s=PERIOD_S,
     silent_after_s=3 * PERIOD_S + TICK_S / 2,
     sigma=np.full(4, 0.1),
+    tests=(None, 1),
+    tick_s=TICK_S,
 )
 START_S = 100.0
 X, Y, EAST, NORTH = range(4)
@@ -241,17 +243,19 @@ def test_a_silence_that_goes_on_at_the_end_stays_open() -> None:
     assert event.start_s == at(50)
 
 
-def test_a_hole_in_the_log_is_a_miss_of_no_sensor() -> None:
+def test_a_hole_in_the_log_is_one_miss_of_no_sensor() -> None:
     drive = Drive().run(BEFORE_HOLE)
     drive.run(1, gap_s=5.0).run(20)
-    (hole,) = [event for event in drive.ended if event.sensor is None]
+    event = drive.only()
+    assert (event.sensor, event.channel, event.kind) == (None, None, "miss")
     last = BEFORE_HOLE - 1
-    assert (hole.channel, hole.kind, hole.peak_score) == (None, "miss", pytest.approx(5.0))
-    assert (hole.start_s, hole.end_s) == (at(last), pytest.approx(START_S + last * TICK_S + 5.0))
+    assert (event.start_s, event.end_s) == (at(last), pytest.approx(START_S + last * TICK_S + 5.0))
+    assert event.peak_score == pytest.approx(5.0)
 
 
-def test_a_short_hole_is_jitter() -> None:
-    assert Drive().run(BEFORE_HOLE).run(1, gap_s=0.15).run(20).ended == []
+@pytest.mark.parametrize("gap_s", [0.05, 0.3, GAP_S])
+def test_a_short_hole_is_jitter(gap_s: float) -> None:
+    assert Drive().run(BEFORE_HOLE).run(1, gap_s=gap_s - 1e-3).run(20).ended == []
 
 
 def test_a_sensor_silent_before_and_after_a_hole_is_still_missing() -> None:

@@ -23,7 +23,8 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
     """
     log = model.take(log)
     told = replay_log(model.monitor, log, progress)
-    lost = ~np.asarray(told.believed) & (np.isnan(log.value) | (np.asarray(told.channel) == FAULT))
+    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(told.channel) == FAULT)
+    lost = ~np.asarray(told.believed) & doubtful
     repaired = np.where(lost, np.nan, np.asarray(told.value))
     return Detection(
         log=log,
@@ -51,8 +52,8 @@ class Live:
     def __init__(self, model: Model) -> None:
         self.events: list[Event] = []
         self._step = Stepper(model.monitor)
-        self._tracker = Tracker(_watch(model))
-        self._silent_after = model.silent_after_s
+        self._watch = _watch(model)
+        self._tracker = Tracker(self._watch)
         held = {sensor.name: sensor.held for sensor in model.sensors}
         names = [channel.sensor for channel in model.channels]
         self._held = [np.flatnonzero([n == name for n in names]) for name in held if held[name]]
@@ -78,8 +79,8 @@ class Live:
             fresh = self._fresh if not self._held else self._changed(np.asarray(value, float))
         now = self._step.push(time, value, fresh)
         gap_s, self._time = (0.0 if self._time is None else float(time - self._time)), float(time)
-        # A row without a fault or a silence, while no event is open, changes nothing in the tracker.
-        silent = (now.silence > self._silent_after).any()
+        # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
+        silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()
         if now.sample == FAULT or silent or not self._begun or self._tracker.busy():
             self._begun = True
             self.events += self._tracker.push(self._time, gap_s, np.asarray(value, float), now)
@@ -98,6 +99,7 @@ class Live:
 
 
 def _watch(model: Model) -> Watch:
+    paths = [channel.path for channel in model.channels]
     return Watch(
         model.method,
         tuple(channel.sensor for channel in model.channels),
@@ -105,11 +107,14 @@ def _watch(model: Model) -> Watch:
         model.period_s,
         model.silent_after_s,
         np.asarray(model.sigma),
+        tuple(None if path is None else paths.index(path) for _, path in model.tests),
+        model.tick_s,
     )
 
 
 def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
-    tracker = Tracker(_watch(model))
+    watch = _watch(model)
+    tracker = Tracker(watch)
     score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
     columns = (
         told.channel,
@@ -124,7 +129,8 @@ def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
     )
     arrays = [np.asarray(column) for column in columns]
     gap_s = np.diff(log.time, prepend=log.time[:1])
-    marked = (np.asarray(told.sample) == FAULT) | (np.asarray(told.silence) > model.silent_after_s).any(axis=1)
+    silent = (gap_s > watch.hole_s) | (np.asarray(told.silence) > watch.silent_after_s).any(axis=1)
+    marked = (np.asarray(told.sample) == FAULT) | silent
     ended: list[Event] = []
     for i in _interesting(log.time, marked):
         now = Now(*(array[i] for array in arrays))

@@ -11,7 +11,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int8
 
-from sensorfault.logs.table import Log
+from sensorfault.logs.table import Log, LogError
 from sensorfault.monitor.monitor import Monitor, MonitorState
 from sensorfault.run import samples
 from sensorfault.types import Report, Sample
@@ -78,11 +78,11 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
     """Judge every row of a log, from a fresh start. `progress` is told the share done, 0 to 1.
 
     Raises:
-        ValueError: the log is empty.
+        LogError: the log is empty.
     """
     total = len(log)
     if not total:
-        raise ValueError(f"{log.name} has no rows to replay; give a longer part of it.")
+        raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
     (monitor, state), told = _strong((monitor, monitor.init())), []
     for start in range(0, total, CHUNK):
         rows = np.minimum(np.arange(start, start + CHUNK), total - 1)

@@ -18,9 +18,10 @@ from safetensors.numpy import save_file
 
 from sensorfault.files import appearing
 from sensorfault.logs.table import Channel, LogError, Sensor
-from sensorfault.model import Model
+from sensorfault.model import Model, owners
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.parts import PARTS
+from sensorfault.types import Sample
 
 FORMAT = 1
 Tensors = dict[str, np.ndarray]
@@ -76,14 +77,14 @@ def load(path: Path | str) -> Model:
     text = meta["sensorfault"]
     if meta.get("digest") != _digest(text, tensors):
         raise ModelError(f"{path}: its contents were changed after it was written; {refit}.")
-    header = json.loads(text)
-    if header.get("format") != FORMAT:
-        raise ModelError(f"{path}: written in format {header.get('format')}, this version reads {FORMAT}; {refit}.")
     try:
+        header = json.loads(text)
+        if header["format"] != FORMAT:
+            raise ModelError(f"{path}: written in format {header['format']}, this version reads {FORMAT}; {refit}.")
         monitor = _decode(header["monitor"], tensors)
         if not isinstance(monitor, Monitor):
             raise TypeError("it holds no monitor")
-        return Model(
+        model = Model(
             header["method"],
             monitor,
             tuple(Channel(**channel) for channel in header["channels"]),
@@ -94,8 +95,29 @@ def load(path: Path | str) -> Model:
             tuple(header["sigma"]),
             header["summary"],
         )
-    except (KeyError, TypeError, ValueError) as error:
+        _try(model)
+        return model
+    except ModelError:
+        raise
+    except (KeyError, IndexError, AttributeError, TypeError, ValueError) as error:
         raise ModelError(f"{path}: its header does not describe a model ({error}); {refit}.") from None
+
+
+def _try(model: Model) -> None:
+    """Trace one step, computing nothing: parts that do not fit each other are refused here, not on the road."""
+    channels = len(model.channels)
+    if owners(model.channels, model.sensors) != model.monitor.owner or not model.tick_s > 0:
+        raise ValueError("its channels, sensors or clock do not go together")
+    if not channels == len(model.watched) == len(model.sigma):
+        raise ValueError("its channels are not as many as its marks for them")
+    none = jnp.zeros(channels, bool)
+    sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none)
+    after, told = jax.eval_shape(lambda: model.monitor.step(model.monitor.init(), sample))
+    before = jax.eval_shape(model.monitor.init)
+    if jax.tree.map(jnp.shape, after) != jax.tree.map(jnp.shape, before):
+        raise ValueError("a step changes the shape of its state")
+    if sum(score.value.shape[0] for score in told.scores) != len(model.tests):
+        raise ValueError("its tests are not as many as their names")
 
 
 def _versions() -> dict[str, str]:

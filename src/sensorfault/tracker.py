@@ -16,7 +16,11 @@ GAP_S = 1.0  # a shorter hole in the log is the recorder's jitter, not a fault
 
 @dataclass(frozen=True)
 class Watch:
-    """What the tracker must know of a model, channel by channel."""
+    """What the tracker must know of a model, channel by channel.
+
+    `tests[k]`: the column of the channel that test k examines alone, None for a joint test. `tick_s`: the clock; where
+    it stands still for longer than three ticks there is a hole in the log, which is nobody's silence.
+    """
 
     method: str
     sensor: tuple[str, ...]
@@ -24,6 +28,13 @@ class Watch:
     period_s: Float[np.ndarray, " C"]
     silent_after_s: Float[np.ndarray, " C"]
     sigma: Float[np.ndarray, " C"]  # of the healthy residual [SI]
+    tests: tuple[int | None, ...]
+    tick_s: float
+
+    @property
+    def hole_s(self) -> float:
+        """A longer time between two samples is a hole [s]."""
+        return 3.5 * self.tick_s
 
 
 @dataclass
@@ -44,6 +55,7 @@ class Tracker:
         self._open: dict[int | None, _Open] = {}
         self._silent: dict[tuple[str, str | None], _Open] = {}
         self._first: float | None = None
+        self._holes: list[tuple[float, float]] = []  # (end, length) of those that may lie in somebody's silence [s]
         sensors = dict.fromkeys(watch.sensor)
         self._of = {s: [c for c, owner in enumerate(watch.sensor) if owner == s] for s in sensors}
 
@@ -76,7 +88,7 @@ class Tracker:
         for c in accused:
             one = self._open.setdefault(c, _Open(time, time))
             one.last_s = time
-            self._peak(one, now)
+            self._peak(c, one, now)
         for c, one in self._open.items():
             if c is None or not now.valid[c]:
                 continue
@@ -99,9 +111,11 @@ class Tracker:
             told.append(replace(worst, start_s=start_s, channel=None))
         return told
 
-    def _peak(self, one: _Open, now: Now) -> None:
+    def _peak(self, c: int | None, one: _Open, now: Now) -> None:
+        """The largest excess of a joint test, or of one on this channel."""
+        mine = np.array([test is None or test == c for test in self._watch.tests])
         with np.errstate(divide="ignore", invalid="ignore"):
-            excess = np.where(now.score > now.limit, now.score / np.maximum(now.limit, 1e-300), -np.inf)
+            excess = np.where(mine & (now.score > now.limit), now.score / np.maximum(now.limit, 1e-300), -np.inf)
         k = int(np.argmax(excess))
         old = one.score / max(one.limit, 1e-300) if np.isfinite(one.score) else -np.inf
         if excess[k] > old:
@@ -117,9 +131,13 @@ class Tracker:
     def _silences(self, time: float, gap_s: float, silence: Float[np.ndarray, " C"]) -> list[Event]:
         """A sensor is silent when all its channels are; a channel, when its sensor still speaks."""
         assert self._first is not None
-        since_first = time - self._first
-        # What spoke at the last tick is not silent because no tick came since.
-        silence = np.where(silence <= gap_s, 0.0, np.minimum(silence, since_first))
+        silence = np.minimum(silence, time - self._first)
+        if gap_s > self._watch.hole_s:
+            self._holes.append((time, gap_s))
+        self._holes = [hole for hole in self._holes if hole[0] > time - silence.max()]
+        for end, length in self._holes:
+            # No tick came in a hole: who was heard before it was not silent in it.
+            silence = silence - np.where(time - silence < end, length, 0.0)
         silent = silence > self._watch.silent_after_s
         missing: dict[tuple[str, str | None], tuple[float, float]] = {}
         if silent.any():

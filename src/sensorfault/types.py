@@ -65,7 +65,8 @@ class Evidence(NamedTuple):
     """All tests of one sample, branch by branch, as the decision sees them.
 
     `gates[b]`: whether an alarm of branch b may keep this sample out of a filter (a window's alarm may not).
-    `certain[b]`: whether it accuses by itself, whatever the other channels say (an exact repeat does). `struck`: channels already taken out of this sample, with the accusation standing. `born`: as in Sample.
+    `certain[b]`: whether it accuses by itself, whatever the other channels say (an exact repeat does). `struck`:
+    channels already taken out of this sample, with the accusation standing. `born`: as in Sample.
     """
 
     time: Float[Array, ""]

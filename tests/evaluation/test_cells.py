@@ -12,8 +12,8 @@ from sensorfault.evaluation.judge import GRACE_S, Outcome, judge
 from sensorfault.faults.fault import Fault
 
 BIAS = Fault("bias", "gyro", "x", 100.0, 5.0, 3.0, sigmas=True)
-HIT = Outcome(BIAS, True, 1.0, True, True, True, event(101.0), 4.0, 1.0)
-MISSED = Outcome(BIAS, False, math.nan, False, False, False, None, 4.0, 4.0)
+HIT = Outcome(BIAS, True, 1.0, True, True, True, event(101.0), 0, 4.0, 1.0)
+MISSED = Outcome(BIAS, False, math.nan, False, False, False, None, 0, 4.0, 4.0)
 
 
 def test_one_cell_counts_its_group() -> None:

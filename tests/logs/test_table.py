@@ -47,7 +47,7 @@ def test_a_table_for_people() -> None:
 
 def test_shapes_that_do_not_go_together() -> None:
     with pytest.raises(LogError, match="do not go with"):
-        Log(np.zeros(3), np.zeros((2, 1)), np.ones((2, 1), bool), (Channel("x", "gyro"),), (Sensor("gyro", 1.0),))
+        Log(np.zeros(2), np.zeros((2, 1)), np.ones((2, 1), bool), (), (Sensor("gyro", 1.0),))
 
 
 @pytest.mark.parametrize(

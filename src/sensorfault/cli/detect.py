@@ -30,6 +30,7 @@ def command(
 
     Without --model the method is fitted on the log's own beginning, which is then taken as healthy.
     """
+    work.check_outputs([report_path, json_path], [log, vehicle, model_path])
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     found = work.detect(ready.model, ready.judged)

@@ -48,9 +48,9 @@ def command(
     """
     from sensorfault.evaluation.campaign import campaign
     from sensorfault.evaluation.judge import judge
-    from sensorfault.faults.text import truth_from_json
 
-    truth = truth_from_json(truth_path.read_text()) if truth_path else None
+    work.check_outputs([json_path], [log, vehicle, model_path, truth_path])
+    truth = work.read_truth(truth_path) if truth_path else None
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     if truth is not None:
@@ -80,7 +80,7 @@ def _alarms(judgement: "Judgement") -> str:
 
 
 def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None) -> None:
-    columns = ("fault", "found", "delay [s]", "as", "sensor", "channel", "kind")
+    columns = ("fault", "found", "delay [s]", "as", "sensor", "channel", "kind", "innocents")
     rows = []
     for outcome in judgement.outcomes:
         named = outcome.named
@@ -90,9 +90,8 @@ def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None)
         )
         delay = show.number(outcome.delay_s)
         words = f"{show.clock(outcome.fault.start_s)} {show.fault_words(outcome.fault)}"
-        rows.append(
-            (words, "yes" if outcome.found else "no", delay, found, *(right if outcome.found else ("", "", "")))
-        )
+        told = (*right, str(outcome.innocents)) if outcome.found else ("", "", "", "")
+        rows.append((words, "yes" if outcome.found else "no", delay, found, *told))
     show.table("Injected faults", columns, rows, json_path != "-")
     if learned:
         show.say(f"{learned} faults lie in the part that was fitted on and were not judged.")
@@ -111,14 +110,15 @@ def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None)
 def _show_campaign(log: "Log", done: "Campaign", json_path: str | None) -> None:
     columns = (
         *("fault", "magnitude", "on", "n", "recall %", "chance %", "delay 50 [s]", "95 [s]"),
-        *("sensor %", "channel %", "kind %", "error left %"),
+        *("sensor %", "channel %", "kind %", "innocents", "error left %"),
     )
     rows = [
         (
             *(cell.kind, show.number(cell.magnitude), cell.channel, str(cell.faults)),
             *(show.percent(cell.recall), show.percent(cell.chance)),
             *(show.number(cell.delay_p50_s), show.number(cell.delay_p95_s)),
-            *(show.percent(x) for x in (cell.sensor_right, cell.channel_right, cell.kind_right, cell.recovery)),
+            *(show.percent(x) for x in (cell.sensor_right, cell.channel_right, cell.kind_right)),
+            *(show.number(cell.innocents), show.percent(cell.recovery)),
         )
         for cell in done.cells
     ]

@@ -32,6 +32,7 @@ def command(
     from sensorfault.store import save
 
     recipe(method)
+    work.check_outputs([out, json_path], [log, vehicle])
     table = work.read_log(log, vehicle)
     if until_s is not None:
         table = table.between(end_s=until_s)

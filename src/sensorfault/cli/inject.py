@@ -33,10 +33,12 @@ def command(
 
     if out is None:
         raise LogError("no --out was given; name the log to write, such as --out faulty.csv.")
+    truth_path = out.with_suffix(".truth.json")
+    vehicle_path = out.with_suffix(".vehicle.toml")
+    work.check_outputs([out, truth_path, vehicle_path, json_path], [log, vehicle])
     table = work.read_log(log, vehicle)
     injected = inject(table, [parse_fault(text, table) for text in faults], seed)
     write(injected.log, out)
-    truth_path = out.with_suffix(".truth.json")
     with appearing(truth_path) as temporary:
         temporary.write_text(truth_to_json(injected.truth) + "\n")
     for fault in injected.truth:

@@ -33,9 +33,9 @@ def command(
     One file, interactive, opens offline.
     """
     from sensorfault.evaluation.page import write_page
-    from sensorfault.faults.text import truth_from_json
 
-    truth = truth_from_json(truth_path.read_text()) if truth_path else ()
+    work.check_outputs([out], [log, vehicle, model_path, truth_path])
+    truth = work.read_truth(truth_path) if truth_path else ()
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     found = work.detect(ready.model, ready.judged)

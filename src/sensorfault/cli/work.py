@@ -1,5 +1,6 @@
 """What verbs do to logs and models, with progress: read, find or fit the model, detect."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,8 +9,42 @@ from sensorfault.cli import show
 
 if TYPE_CHECKING:
     from sensorfault.detection import Detection
+    from sensorfault.faults.fault import Fault
     from sensorfault.logs import Log
     from sensorfault.model import Model
+
+
+def check_outputs(outputs: Sequence[Path | str | None], inputs: Sequence[Path | None]) -> None:
+    """Before the work: every output has a folder to go to, is none itself, and is nobody's input.
+
+    Raises:
+        LogError: one of them is not so.
+    """
+    from sensorfault.logs import LogError
+
+    read = {path.resolve() for path in inputs if path is not None}
+    for path in (Path(output) for output in outputs if output not in (None, "-")):
+        if not path.parent.is_dir():
+            raise LogError(f"{path}: there is no folder {path.parent}; make it, or write somewhere else.")
+        if path.is_dir():
+            raise LogError(f"{path} is a folder; give a file to write.")
+        if path.resolve() in read:
+            raise LogError(f"{path} is read from and would be written over; give another file to write.")
+
+
+def read_truth(path: Path) -> "tuple[Fault, ...]":
+    """What `inject` did to a log.
+
+    Raises:
+        FaultError: not such a file.
+    """
+    from sensorfault.faults.fault import FaultError
+    from sensorfault.faults.text import truth_from_json
+
+    try:
+        return truth_from_json(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError:
+        raise FaultError(f"{path}: not a text file; give the .truth.json that 'inject' wrote.") from None
 
 
 def read_log(path: Path, vehicle: Path | None) -> "Log":
@@ -35,6 +70,10 @@ class Ready:
 
 def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: int) -> Ready:
     """Load the model; without one, fit on the log's own beginning and judge the rest."""
+    from sensorfault.logs import LogError
+
+    if not 0.05 <= learn <= 0.95:
+        raise LogError(f"--learn is {learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
     if model_path is not None:
         from sensorfault.store import load
 

@@ -39,7 +39,7 @@ class Campaign:
     auc_pr: float
 
     def isolation(self) -> dict[str, dict[str, int]]:
-        """How often a fault on the one sensor was laid at the door of the other: counts[of][named], found faults only."""
+        """How often a fault of one sensor was laid at the door of another: counts[of][named], found faults only."""
         counts: dict[str, dict[str, int]] = {}
         for outcome in self.outcomes:
             if outcome.named is not None:
@@ -63,8 +63,12 @@ def campaign(
     The log must be one that the model was not fitted on; limits stay as they are.
 
     Raises:
-        LogError: the log is too short for one fault.
+        LogError: the log is too short for one fault, or there is no such kind of fault.
     """
+    if unknown := [kind for kind in kinds if kind not in MAGNITUDES]:
+        raise LogError(f"fault kind '{unknown[0]}' is unknown; take some of {', '.join(MAGNITUDES)}.")
+    if not duration_s > 0:
+        raise LogError(f"a fault of {duration_s:g} s is none; give a duration above 0.")
     log = model.take(log)
     at_once = int((log.duration_s - PAUSE_S) / (duration_s + PAUSE_S))
     if at_once < 1:

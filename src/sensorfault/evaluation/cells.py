@@ -15,7 +15,8 @@ class Cell:
     """One row of the recall table: all faults of one kind, channel and magnitude.
 
     `chance`: share of fault windows of this length in which the same model raises an alarm when nothing is injected.
-    `recovery`: median of repaired over measured error, below 1 where the stand-in is better than the faulty value.
+    `innocents`: events a fault on healthy channels. `recovery`: median of repaired over measured error, below 1 where
+    the stand-in is better than the faulty value.
     """
 
     kind: str
@@ -29,6 +30,7 @@ class Cell:
     sensor_right: float
     channel_right: float
     kind_right: float
+    innocents: float
     recovery: float
 
 
@@ -61,6 +63,7 @@ def _cell(kind: str, where: str, magnitude: float, group: list[Outcome], clean: 
         sensor_right=_share([outcome.sensor_right for outcome in found]),
         channel_right=_share([outcome.channel_right for outcome in found]),
         kind_right=_share([outcome.kind_right for outcome in found]),
+        innocents=float(np.mean([outcome.innocents for outcome in group])),
         recovery=float(np.median(ratios)) if ratios else float("nan"),
     )
 

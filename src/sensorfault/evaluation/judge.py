@@ -18,8 +18,9 @@ class Outcome:
     """What became of one injected fault.
 
     `delay_s`: from onset to the first alarm, NaN if there was none. `sensor_right`, `channel_right`, `kind_right` hold
-    for that first alarm. `error_before`, `error_after`: root mean square of measured and of repaired minus true values
-    over the fault, in healthy sigmas, NaN where there was nothing to compare.
+    for that first alarm. `innocents`: events in its time on channels that were healthy. `error_before`, `error_after`:
+    root mean square of measured and of repaired minus true values over the fault, in healthy sigmas, NaN where there
+    was nothing to compare.
     """
 
     fault: Fault
@@ -29,6 +30,7 @@ class Outcome:
     channel_right: bool
     kind_right: bool
     named: Event | None
+    innocents: int
     error_before: float
     error_after: float
 
@@ -78,7 +80,7 @@ def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
     mine = _of(fault, detection.events, detection.log.period_s)
     before, after = _errors(fault, detection, clean) if clean else (float("nan"), float("nan"))
     if not mine:
-        return Outcome(fault, False, float("nan"), False, False, False, None, before, after)
+        return Outcome(fault, False, float("nan"), False, False, False, None, 0, before, after)
     # The first alarm counts; of several at once, the one that names a sensor.
     first = min(mine, key=lambda event: (noticed_s(event), event.sensor is None))
     return Outcome(
@@ -86,12 +88,18 @@ def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
         found=True,
         delay_s=max(0.0, noticed_s(first) - fault.start_s),
         sensor_right=first.sensor == fault.sensor,
-        channel_right=first.sensor == fault.sensor and fault.channel in (None, first.channel),
+        channel_right=_guilty(fault, first),
         kind_right=first.kind == fault.kind,
         named=first,
+        innocents=sum(not _guilty(fault, event) for event in mine),
         error_before=before,
         error_after=after,
     )
+
+
+def _guilty(fault: Fault, event: Event) -> bool:
+    """Whether an event accuses the channel that lies."""
+    return event.sensor == fault.sensor and fault.channel in (None, event.channel)
 
 
 def _errors(fault: Fault, detection: Detection, clean: Log) -> tuple[float, float]:
@@ -101,6 +109,7 @@ def _errors(fault: Fault, detection: Detection, clean: Log) -> tuple[float, floa
     rows = (log.time >= fault.start_s) & (log.time <= fault.end_s)
     clean = clean.select(log.channels[i].path for i in struck).between(log.time[0], log.time[-1] + log.period_s / 2)
     scale = np.nanstd(clean.value, axis=0)
+    scale[scale == 0] = np.nan  # a channel that never moves has no sigma to measure errors in
     before, after = (
         _rms((value[rows][:, struck] - clean.value[rows]) / scale) for value in (log.value, detection.repaired)
     )

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 HELD_SHARE = 0.3  # a sensor is held if more than this share of its measurements is repeated in the next row
+STALE = 10.0  # a receiver that brings nothing new for so many of its periods has fallen silent
 _REGULAR = 0.88  # share of measurements that last as long as usual, give or take a row
 _SHORTEST = 0.6  # one in five may last for less than this share of the usual
 
@@ -49,6 +50,16 @@ def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
     if usual <= 2:
         return float(np.mean(np.abs(lasts - usual) <= 1)) > _REGULAR and float(np.mean(lasts == 1)) < 1 - HELD_SHARE
     return float(np.quantile(lasts, 0.2)) >= _SHORTEST * usual
+
+
+def stale(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"], period_s: float) -> Bool[np.ndarray, " T"]:
+    """Rows more than STALE periods after the last measurement: what is still held there is no value any more.
+
+    Only for a sensor whose epochs are known: without them a parked car looks just the same.
+    """
+    last = np.maximum.accumulate(np.where(_any(fresh), time, time[0]))
+    late: Bool[np.ndarray, " T"] = time - last > STALE * period_s
+    return late
 
 
 def changes(epoch: Float[np.ndarray, " T"]) -> Bool[np.ndarray, " T"]:

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
-from sensorfault.logs.held import fresh_rows, looks_held, share_old, share_repeated, usual_period_s
+from sensorfault.logs.held import STALE, fresh_rows, looks_held, share_old, share_repeated, stale, usual_period_s
 from sensorfault.logs.readers.rtklib import read_tag
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
@@ -71,6 +71,10 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
             value[:, i] = _channel(source, channel, clock, gaps, sensor.period_s is not None)
         fresh[:, own] = _fresh(source, sensor, value[:, own], clock)
         period = sensor.period_s or usual_period_s(time, fresh[:, own])
+        if sensor.held and sensor.epoch is not None:
+            late = stale(time, fresh[:, own], period)
+            value[late, own] = np.nan
+            notes += _stale_note(source.path.name, sensor.name, late, period)
         described.append(Sensor(sensor.name, period, sensor.held))
         notes += _held_note(source.path.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
@@ -134,6 +138,15 @@ def _epoch(source: Source, name: str | None, clock: Clock) -> np.ndarray | None:
         column = column.rle_id().set(column.is_null(), None)
     epoch: Float[np.ndarray, " T"] = column.cast(pl.Float64).fill_null(np.nan).to_numpy()[clock.rows]
     return epoch
+
+
+def _stale_note(file: str, sensor: str, late: np.ndarray, period_s: float) -> list[str]:
+    if not late.any():
+        return []
+    return [
+        f"{file}: sensor '{sensor}' brought nothing new for longer than {STALE * period_s:.3g} s at a time; "
+        f"{int(late.sum())} rows in which the file held on to the last measurement count as absent."
+    ]
 
 
 def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, fresh: np.ndarray, period: float) -> list[str]:

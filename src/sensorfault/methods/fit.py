@@ -33,11 +33,13 @@ def fit(
     tell = progress or (lambda _: None)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s
     tell(f"fitting {method}")
+    unseen = log.between(cut)
+    if held_out and len(unseen) < 2:
+        raise LogError(f"held_out is {held_out:g}, which keeps no two rows of {log.name} to judge; give more, or 0.")
     model = recipe(method).build(log.between(end_s=cut) if held_out else log, seed)
     summary = model.summary | {"seed": seed}
     if held_out:
         tell("judging the part held out")
-        unseen = log.between(cut)
         alarms = len(detect(model, unseen).events)
         hours = unseen.duration_s / 3600
         summary |= {"held_out_s": unseen.duration_s, "held_out_alarms": alarms, "alarms_per_hour": alarms / hours}

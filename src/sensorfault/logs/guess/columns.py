@@ -17,6 +17,10 @@ _FEW = 16
 _STEADY = 0.15  # relative spread below which three axes have a steady length
 
 
+OTHER_TIME = "another time, or bookkeeping of it"
+QUALITY = "quality or state, no measurement of motion"
+
+
 @dataclass(frozen=True)
 class Column:
     """One column that measures something; `value` as in the file, NaN where there is none."""
@@ -27,20 +31,27 @@ class Column:
 
 
 def measurements(source: Source, time: str, clock: Clock) -> tuple[list[Column], list[tuple[str, str]]]:
-    """Columns that measure something, and the others with the reason why not."""
+    """Columns that measure something, and the others with the reason why not.
+
+    Raises:
+        LogError: a column of numbers has a cell that is none.
+    """
     columns, left_out = [], []
     for name in source.frame.columns:
         if name == time:
             continue
         meaning = read_name(name)
         if meaning.kind == "time":
-            left_out.append((name, "another time, or bookkeeping of it"))
+            left_out.append((name, OTHER_TIME))
         elif meaning.kind == "quality":
-            left_out.append((name, "quality or state, no measurement of motion"))
+            left_out.append((name, QUALITY))
         else:
             try:
                 value = source.column(name).cast(pl.Float64).to_numpy()[clock.rows]
             except LogError:
+                numbers = source.frame[name].cast(pl.Float64, strict=False).is_not_null().mean()
+                if numbers is not None and float(numbers) > 0.5:  # type: ignore[arg-type]
+                    raise  # a measurement with a cell that is none, not a column of words
                 left_out.append((name, "holds text"))
                 continue
             column = Column(name, meaning, np.where(np.isinf(value), np.nan, value))

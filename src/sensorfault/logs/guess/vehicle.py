@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import FileEntry, SensorEntry
-from sensorfault.logs.guess.columns import measurements
+from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY, measurements
 from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.place import Where, files_of
@@ -54,7 +54,7 @@ def guess(path: Where) -> VehicleFile:
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
     name = Path(files[0] if len(files) == 1 else files[0].parent).stem
-    return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *_untied(guesses)))
+    return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *_untied(guesses), *_missed(guesses)))
 
 
 def _guess_file(path: Path) -> _Guess:
@@ -87,6 +87,16 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
                     f"{one.path.parent}: {other.path.name} and {one.path.name} have the same columns and look like two "
                     "drives; name the files of one drive."
                 )
+
+
+def _missed(guesses: list[_Guess]) -> list[str]:
+    """A sentence for each file with columns left out that a person might look for."""
+    said = []
+    for one in guesses:
+        out = [f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY)]
+        if out:
+            said.append(f"{one.path.name}: columns left out as no measurements: {', '.join(out)}.")
+    return said
 
 
 def _untied(guesses: list[_Guess]) -> list[str]:
