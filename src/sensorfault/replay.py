@@ -13,6 +13,7 @@ from jaxtyping import Array, Bool, Float, Int8
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.monitor.monitor import Monitor, MonitorState
+from sensorfault.numerics.packing import pack, unpack
 from sensorfault.run import samples
 from sensorfault.types import Report, Sample
 
@@ -55,16 +56,16 @@ def _keep(report: Report) -> Replayed:
 @jax.jit
 def _chunk(
     monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"]
-) -> tuple[MonitorState, Replayed]:
-    """Rows beyond the log's end (`real` False) fill the last chunk and leave the state alone."""
+) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]]]:
+    """What is kept of each row, packed; rows beyond the log's end (`real` False) leave the state alone."""
 
-    def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, Replayed]:
+    def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, tuple[Array, Array]]:
         sample, real = row
         after, report = monitor.step(state, sample)
         kept: MonitorState = jax.tree.map(lambda new, old: jnp.where(real, new, old), after, state)
-        return kept, _keep(report)
+        return kept, pack(_keep(report))
 
-    done: tuple[MonitorState, Replayed] = lax.scan(one, state, (rows, real))
+    done: tuple[MonitorState, tuple[Array, Array]] = lax.scan(one, state, (rows, real))
     return done
 
 
@@ -89,8 +90,8 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
         real = np.arange(start, start + CHUNK) < total
         chunk = samples(log.time[rows], log.value[rows], log.fresh[rows])
         state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
-        told.append(jax.tree.map(np.asarray, kept))
+        told.append([np.asarray(part) for part in kept])
         if progress:
             progress(min(1.0, (start + CHUNK) / total))
-    stacked: Replayed = jax.tree.map(lambda *parts: np.concatenate(parts)[:total], *told)
-    return stacked
+    example: Replayed = jax.eval_shape(lambda: _keep(monitor.step(state, jax.tree.map(lambda x: x[0], chunk))[1]))
+    return unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))

@@ -3,7 +3,6 @@
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int, Int8
@@ -210,7 +209,8 @@ class Monitor(eqx.Module):
         stands = ~told.tested & ~out & ~sample.born & (age >= 0) & (age <= self.hold_s)
         old = jnp.where(stands, state.verdict, jnp.int8(UNKNOWN))
         channel = jnp.where(bad, jnp.int8(FAULT), jnp.where(clear, jnp.int8(OK), old))
-        sensor = jax.ops.segment_max(channel, jnp.asarray(self.owner), max(self.owner) + 1)
+        mine = jnp.arange(max(self.owner) + 1)[:, None] == jnp.asarray(self.owner)[None]
+        sensor = jnp.where(mine, channel[None], jnp.int8(OK)).max(axis=1)
         known = (channel != UNKNOWN).any()
         wrong = told.hit | (channel == FAULT).any()
         whole = jnp.where(wrong, jnp.int8(FAULT), jnp.where(known, jnp.int8(OK), jnp.int8(UNKNOWN)))

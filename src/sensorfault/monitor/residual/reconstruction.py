@@ -50,15 +50,17 @@ class Reconstruction(eqx.Module):
         copy = self.output @ f(a) + self.offset
         # The same for C samples, in the k-th of which x_k is what it was when last trusted.
         change = (trusted - value) / self.half
-        exchanged = x[None] + jnp.diag(change)
-        copies = f(a[None] + change[:, None] * self.weights.T) @ self.output.T + self.offset[None]
+        own = jnp.eye(len(x))
+        exchanged = x[None] + own * change[None]
+        h_k = f(a[None] + change[:, None] * self.weights.T)
+        copies = (self.output[None] * h_k[:, None]).sum(axis=2) + self.offset[None]
         residual = Residual(
             time=sample.time,
             value=jnp.where(self.watched, (x - copy) * self.half, 0.0),
             cov=self.cov,
             measured=value,
-            expected=jnp.where(self.watched, jnp.diagonal(copies) * self.half + self.center, trusted),
-            noise=jnp.diagonal(self.cov),
+            expected=jnp.where(self.watched, (own * copies).sum(axis=1) * self.half + self.center, trusted),
+            noise=(own * self.cov).sum(axis=1),
             valid=sample.fresh & self.watched,
             born=sample.born,
             extra=jnp.where(self.watched[None], (exchanged - copies) * self.half[None], 0.0),
