@@ -18,7 +18,7 @@ def watchable(log: Log) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
     reasons: dict[str, str] = {}
     for i, channel in enumerate(log.channels):
         if not channel.watch:
-            reasons[channel.path] = "vehicle.toml says watch = false"
+            reasons[channel.path] = "marked watch = false"
         elif not often[i]:
             reasons[channel.path] = "slower than the clock"
         elif np.ptp(log.value[measured[:, i], i]) == 0:

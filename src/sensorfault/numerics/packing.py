@@ -1,6 +1,6 @@
 """A tree of small arrays as two vectors: what a scan writes in two strokes instead of twelve."""
 
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -13,8 +13,8 @@ Tree = TypeVar("Tree")
 def pack(tree: object) -> tuple[Float[Array, " n"], Int8[Array, " m"]]:
     """All floating numbers of the tree in one vector, all booleans and small integers (-128 to 127) in another."""
     leaves = [jnp.ravel(leaf) for leaf in jax.tree.leaves(tree)]
-    floats = [leaf for leaf in leaves if _floating(leaf)]
-    marks = [leaf.astype(jnp.int8) for leaf in leaves if not _floating(leaf)]
+    floats = [leaf for leaf in leaves if _floating(leaf.dtype)]
+    marks = [leaf.astype(jnp.int8) for leaf in leaves if not _floating(leaf.dtype)]
     return jnp.concatenate([jnp.zeros(0), *floats]), jnp.concatenate([jnp.zeros(0, jnp.int8), *marks])
 
 
@@ -24,7 +24,7 @@ def unpack(example: Tree, floats: Float[np.ndarray, "T n"], marks: Int8[np.ndarr
     at = {True: 0, False: 0}
     stacked = []
     for leaf in leaves:
-        kind, size = _floating(leaf), int(np.prod(leaf.shape))
+        kind, size = _floating(leaf.dtype), int(np.prod(leaf.shape))
         columns = (floats if kind else marks)[:, at[kind] : at[kind] + size]
         stacked.append(columns.reshape(-1, *leaf.shape).astype(leaf.dtype, copy=False))
         at[kind] += size
@@ -32,5 +32,5 @@ def unpack(example: Tree, floats: Float[np.ndarray, "T n"], marks: Int8[np.ndarr
     return tree
 
 
-def _floating(leaf: Array) -> bool:
-    return bool(jnp.issubdtype(leaf.dtype, jnp.floating))
+def _floating(dtype: Any) -> bool:
+    return bool(jnp.issubdtype(dtype, jnp.floating))
