@@ -82,15 +82,17 @@ class Accusation(NamedTuple):
     """What a decision says of one sample.
 
     `named`: faulty. `gated`: named, and by a test that may keep it out of a filter; `certain`: by one that accuses by
-    itself. `suspect`: over a limit, whether or
-    not that is a fault yet, so that nothing is learned from it. `size` ranks the accused; it is -inf for all others.
-    `tested`: examined by some test. `hit`: something is wrong, whether or not it can be said on whose account.
+    itself. `suspect`: over a limit, whether or not that is a fault yet, so that nothing is learned from it. `unlaid`:
+    examined by a test that is over its limit and cannot say on whose account, so that nobody it examined is cleared.
+    `size` ranks the accused; it is -inf for all others. `tested`: examined by some test. `hit`: something is wrong,
+    whether or not it can be said on whose account.
     """
 
     named: Bool[Array, " C"]
     gated: Bool[Array, " C"]
     certain: Bool[Array, " C"]
     suspect: Bool[Array, " C"]
+    unlaid: Bool[Array, " C"]
     size: Float[Array, " C"]
     tested: Bool[Array, " C"]
     hit: Bool[Array, ""]

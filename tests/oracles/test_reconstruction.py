@@ -11,6 +11,7 @@ from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.threshold.fixed import Fixed
 
@@ -42,3 +43,32 @@ def test_forward_pass(activation: str) -> None:
         np.testing.assert_array_equal(told.residual.valid[k], watched)
         np.testing.assert_allclose(told.scores[0].value[k, 0], np.linalg.norm(error[watched]), rtol=1e-12)
         np.testing.assert_allclose(told.scores[0].blame[k, 0], error**2 / (error @ error), rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.usefixtures("promoting")
+def test_exchanged_channels_and_whom_they_blame() -> None:
+    """Each channel in turn exchanged for its last trusted value, the network run anew on each such sample."""
+    rng = np.random.default_rng(5)
+    w, b, beta = rng.standard_normal((HIDDEN, CHANNELS)), rng.standard_normal(HIDDEN), rng.random((CHANNELS, HIDDEN))
+    parts = [w, b, beta, np.zeros(CHANNELS), np.zeros(CHANNELS), np.ones(CHANNELS), np.eye(CHANNELS)]
+    residual = Reconstruction(*map(jnp.asarray, parts), jnp.ones(CHANNELS, bool), "tanh")
+    scale = np.array([1.0, 2.0, 0.5, 1.0])
+    branch = Branch(Exchange(jnp.asarray(scale)), Fixed(jnp.array([jnp.inf])))
+    value = rng.uniform(-1, 1, (12, CHANNELS))
+    owner = tuple(range(CHANNELS))
+    told = walk(Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(CHANNELS), owner), log(value)).reports
+
+    def left(x: np.ndarray) -> np.ndarray:
+        return x - beta @ np.tanh(w @ x + b)
+
+    for k in range(1, 12):  # limits are off, so what was measured last is what was trusted last
+        norm = np.linalg.norm(left(value[k]) / scale)
+        taken = np.zeros(CHANNELS)
+        for c in range(CHANNELS):
+            other = value[k].copy()
+            other[c] = value[k - 1, c]
+            np.testing.assert_allclose(told.residual.extra[k, c], left(other), rtol=1e-10, atol=1e-12)
+            np.testing.assert_allclose(told.residual.expected[k, c], (other - left(other))[c], rtol=1e-10, atol=1e-12)
+            taken[c] = max(norm**2 - np.linalg.norm(left(other) / scale) ** 2, 0.0)
+        np.testing.assert_allclose(told.scores[0].value[k, 0], norm, rtol=1e-10)
+        np.testing.assert_allclose(told.scores[0].blame[k, 0], taken / norm**2, rtol=1e-9, atol=1e-12)

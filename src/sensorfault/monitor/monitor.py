@@ -203,7 +203,7 @@ class Monitor(eqx.Module):
         # Accused by this sample's own scores, yet no exclusion left: unknown, not ok.
         left = told.gated & (told.size > -jnp.inf) & ~struck & bool(self.most)
         bad = told.named & ~left
-        clear = told.tested & ~left & ~out
+        clear = told.tested & ~left & ~out & ~told.unlaid
         # Without a new test the last verdict stands for hold_s, unless the slot now carries another source.
         age = sample.time - state.tested
         stands = ~told.tested & ~out & ~sample.born & (age >= 0) & (age <= self.hold_s)

@@ -13,6 +13,7 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
     a test can say nothing on whose account it is over, all it covers are suspect.
     """
     named = gated = certain = suspect = tested = evidence.struck
+    unlaid = jnp.zeros_like(evidence.struck)
     size = jnp.full(evidence.struck.shape, -jnp.inf)
     hit = evidence.struck.any()
     branches = zip(evidence.scores, evidence.limits, evidence.gates, evidence.certain, strict=True)
@@ -26,7 +27,9 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
         named |= accused
         gated |= accused & gates
         certain |= accused & alone
-        suspect |= (over[:, None] & jnp.where(most > 0, score.blame > 0, score.covers)).any(axis=0)
+        nobody = (over[:, None] & (most <= 0) & score.covers).any(axis=0)
+        unlaid |= nobody
+        suspect |= nobody | (over[:, None] & (score.blame > 0)).any(axis=0)
         tested |= (score.valid[:, None] & score.covers).any(axis=0)
         hit |= over.any()
-    return Accusation(named, gated, certain, suspect, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)
+    return Accusation(named, gated, certain, suspect, unlaid, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)

@@ -40,12 +40,14 @@ class Persist(eqx.Module):
         sample = ((state.sample << 1) | now.hit.astype(jnp.int32)) & mask
         sample = jnp.where(now.tested.any(), sample, state.sample)
         named = now.tested & (jnp.bitwise_count(channel) >= self.needed)
+        hit = now.tested.any() & (jnp.bitwise_count(sample) >= self.needed)
         told = now._replace(
             named=named,
             gated=named & now.gated,
             certain=named & now.certain,
             size=jnp.where(named, now.size, -jnp.inf),
-            hit=now.tested.any() & (jnp.bitwise_count(sample) >= self.needed),
+            unlaid=now.unlaid & hit,
+            hit=hit,
         )
         return told, _Recent(channel, sample)
 
