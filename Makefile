@@ -22,7 +22,7 @@ real: .venv/.dev              ## the tests on the real logs in SENSORFAULT_DATA
 	$(BIN)/python -m pytest -n 2 -m real
 
 bench: .venv/.bench           ## ratios against peers, each within one run
-	for file in benchmarks/bench_*.py; do $(BIN)/python $$file || exit; done
+	missed=0; for file in benchmarks/bench_*.py; do $(BIN)/python $$file || missed=1; done; exit $$missed
 
 .venv/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv

@@ -10,10 +10,3 @@ import pytest
 def strict() -> Iterator[None]:
     with jax.numpy_rank_promotion("raise"), jax.numpy_dtype_promotion("strict"):
         yield
-
-
-@pytest.fixture
-def promoting() -> Iterator[None]:
-    """For what adds truth values to numbers (the bit memory of Persist), or a row to a matrix (Reconstruction)."""
-    with jax.numpy_dtype_promotion("standard"), jax.numpy_rank_promotion("allow"):
-        yield

@@ -16,7 +16,6 @@ def three_of_five(channels: int, hold_s: float = 0.0):
     return says([branch(each(channels))], tuple(range(channels)), decision=Persist(channels, 3, 5), hold_s=hold_s)
 
 
-@pytest.mark.usefixtures("promoting")
 def test_persist_needs_its_number_within_its_window() -> None:
     over = np.array([2, 0, 2, 0, 2, 0, 2, 0, 0, 2.0])[:, None]
     told = walk(three_of_five(1), script(over))
@@ -25,7 +24,6 @@ def test_persist_needs_its_number_within_its_window() -> None:
     np.testing.assert_array_equal(told.channel[:, 0], expected)
 
 
-@pytest.mark.usefixtures("promoting")
 def test_persist_counts_tests_and_not_samples() -> None:
     """A 10 Hz fix has as many tests as fixes: the samples between neither count nor forget."""
     fresh = (np.arange(9) % 2 == 0)[:, None]
@@ -35,14 +33,12 @@ def test_persist_counts_tests_and_not_samples() -> None:
     np.testing.assert_array_equal(told.channel[1::2, 0], [UNKNOWN] * 4)
 
 
-@pytest.mark.usefixtures("promoting")
 def test_a_persistent_verdict_is_held_like_any_other() -> None:
     fresh = np.array([1, 1, 1, 0, 0, 0], bool)[:, None]
     told = walk(three_of_five(1, hold_s=2.0), script(np.full((6, 1), 2.0), fresh=fresh))
     np.testing.assert_array_equal(told.channel[:, 0], [OK, OK, FAULT, FAULT, FAULT, UNKNOWN])
 
 
-@pytest.mark.usefixtures("promoting")
 def test_persist_counts_who_was_struck_in_this_sample() -> None:
     """Exclusion judges one sample several times; each channel is still counted once."""
     monitor = says([branch(each(2))], (0, 1), most=2, decision=Persist(2, 2, 3))

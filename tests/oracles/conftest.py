@@ -1,3 +1,3 @@
-from laws.strict import promoting, strict
+from laws.strict import strict
 
-__all__ = ["promoting", "strict"]
+__all__ = ["strict"]

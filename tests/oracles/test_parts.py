@@ -6,7 +6,6 @@ from collections import deque
 import jax
 import jax.numpy as jnp
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
@@ -111,7 +110,6 @@ def repeats_monitor(needed: int, window: int) -> Monitor:
     return Monitor(FromBlock(CHANNELS), (branch,), decision, rebuild, jnp.full(CHANNELS, HOLD_S), (0, 1, 2))
 
 
-@pytest.mark.usefixtures("promoting")
 @settings(max_examples=40, deadline=None)
 @given(seeds, chances, chances, st.sampled_from([(1, 1), (2, 5), (31, 31)]))
 def test_repeats_persist(seed: int, missing: float, held: float, rule: tuple[int, int]) -> None:

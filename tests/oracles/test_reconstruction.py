@@ -19,7 +19,6 @@ CHANNELS, HIDDEN = 4, 7
 ACTIVATIONS = {"identity": lambda x: x, "sigmoid": expit, "tanh": np.tanh, "relu": lambda x: np.maximum(x, 0)}
 
 
-@pytest.mark.usefixtures("promoting")
 @pytest.mark.parametrize("activation", ACTIVATIONS)
 def test_forward_pass(activation: str) -> None:
     rng = np.random.default_rng(11)
@@ -45,7 +44,6 @@ def test_forward_pass(activation: str) -> None:
         np.testing.assert_allclose(told.scores[0].blame[k, 0], error**2 / (error @ error), rtol=1e-10, atol=1e-12)
 
 
-@pytest.mark.usefixtures("promoting")
 def test_exchanged_channels_and_whom_they_blame() -> None:
     """Each channel in turn exchanged for its last trusted value, the network run anew on each such sample."""
     rng = np.random.default_rng(5)
