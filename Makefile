@@ -1,5 +1,5 @@
 # Two verbs for newcomers, demo and test; each sets up what it needs in .venv.
-PYTHON ?= python3.11
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := .venv/bin
 # shapes and types checked while tests run; an int will do for a float
 SHAPES := sensorfault,beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))

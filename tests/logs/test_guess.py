@@ -169,6 +169,18 @@ def test_a_file_without_names(tmp_path: Path, gravity: float, unit: str, gyro_fi
     round_trip(vehicle)
 
 
+def test_sensors_that_are_silent_for_a_while(tmp_path: Path) -> None:
+    """Once: rows without any value gave a warning of NumPy's instead of a unit."""
+    gyro, acc = np.degrees(GYRO), ACC.copy()
+    gyro[500:700] = np.nan
+    acc[::2, 0], acc[1::2, 1:] = np.nan, np.nan  # no row has all three
+    table = {"time_s": TIME, **dict(zip(("gyro_x", "gyro_y", "gyro_z"), gyro.T, strict=True))}
+    table |= dict(zip(("acc_x", "acc_y", "acc_z"), acc.T, strict=True))
+    units = {name: {unit for _, unit in c.values()} for name, c in described(guess(save(tmp_path, table))).items()}
+    assert units["gyro"] == {"deg/s"}
+    assert units["accelerometer"] == {"m/s^2"}
+
+
 def test_three_columns_of_about_one_are_no_accelerometer_unless_their_length_is_steady(tmp_path: Path) -> None:
     noise = RANDOM.normal(size=(ROWS, 3)) * 0.65
     table = {f"a{i}": column for i, column in enumerate(noise.T)} | {"t": TIME}

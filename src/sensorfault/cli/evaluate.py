@@ -75,7 +75,8 @@ def _alarms(judgement: "Judgement") -> str:
     minutes = judgement.healthy_hours * 60
     return (
         f"False alarms where nothing was injected: {len(judgement.false_alarms)} in {minutes:.1f} min, "
-        f"{show.number(judgement.false_alarms_per_hour)} an hour."
+        f"{show.number(judgement.false_alarms_per_hour)} an hour; with 95 % confidence below "
+        f"{show.number(judgement.false_alarms_per_hour_below)}."
     )
 
 
@@ -102,6 +103,7 @@ def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None)
             "outcomes": [asdict(outcome) for outcome in judgement.outcomes],
             "false_alarms": [event.as_dict() for event in judgement.false_alarms],
             "false_alarms_per_hour": judgement.false_alarms_per_hour,
+            "false_alarms_per_hour_below": judgement.false_alarms_per_hour_below,
             "healthy_hours": judgement.healthy_hours,
         },
     )
@@ -135,6 +137,7 @@ def _show_campaign(log: "Log", done: "Campaign", json_path: str | None) -> None:
             "cells": [asdict(cell) for cell in done.cells],
             "isolation": done.isolation(),
             "false_alarms_per_hour": done.untouched.false_alarms_per_hour,
+            "false_alarms_per_hour_below": done.untouched.false_alarms_per_hour_below,
             "healthy_hours": done.untouched.healthy_hours,
             "auc": done.auc,
             "auc_pr": done.auc_pr,

@@ -11,7 +11,8 @@ from sensorfault.cli import options, show
 @options.log_argument
 @options.out_option(None, "Where to write it.  [default: vehicle.toml beside the log]")
 @click.option("--force", is_flag=True, help="Replace an existing file.")
-def command(log: Path, out: Path | None, force: bool) -> None:
+@options.json_option
+def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> None:
     """Look at an unknown log and write a vehicle.toml to check and correct.
 
     Every line is a guess from names and values and says why it was made.
@@ -31,3 +32,10 @@ def command(log: Path, out: Path | None, force: bool) -> None:
         channels = ", ".join(f"{c.name} [{c.unit}]" if c.unit else c.name for c in sensor.channels)
         show.say(f"  {sensor.name}: {channels}")
     show.say(f"Wrote {target}: {len(found.sensors)} sensors. Check it, then run 'sensorfault detect {log}'.")
+    listed = {
+        sensor.name: [
+            {"channel": c.name, "column": c.column, "unit": c.unit, "watch": c.watch} for c in sensor.channels
+        ]
+        for sensor in found.sensors
+    }
+    show.write_json(json_path, {"vehicle": str(target), "sensors": listed, "notes": list(found.notes)})

@@ -18,6 +18,7 @@ from sensorfault.cli import options, show, work
     "--truth", "truth_path", type=click.Path(path_type=Path), help="What 'sensorfault inject' did to the log."
 )
 @options.seed_option
+@options.json_option
 def command(
     log: Path,
     vehicle: Path | None,
@@ -27,6 +28,7 @@ def command(
     out: Path,
     truth_path: Path | None,
     seed: int,
+    json_path: str | None,
 ) -> None:
     """Write a page: signals, scores against limits, faults, and the verdict on each sensor over time.
 
@@ -34,10 +36,11 @@ def command(
     """
     from sensorfault.evaluation.page import write_page
 
-    work.check_outputs([out], [log, vehicle, model_path, truth_path])
+    work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
     truth = work.read_truth(truth_path) if truth_path else ()
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     found = work.detect(ready.model, ready.judged)
     write_page(found, out, truth, summary=ready.sentences)
     show.say(f"{len(found.events)} fault events. Wrote {out}.")
+    show.write_json(json_path, work.answer(table, found, ready))

@@ -109,7 +109,7 @@ def rate(model: "Model") -> tuple[str, ...]:
         return ("False-alarm rate: not measured.",)
     return (
         f"False alarms: {told['held_out_alarms']} in the {told['held_out_s']:.0f} s held out from the fit, "
-        f"{told['alarms_per_hour']:.3g} an hour.",
+        f"{told['alarms_per_hour']:.3g} an hour; with 95 % confidence below {told['alarms_per_hour_below']:.3g}.",
     )
 
 

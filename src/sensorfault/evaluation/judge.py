@@ -9,6 +9,7 @@ from sensorfault.detection import Detection
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
+from sensorfault.numerics.poisson import rate_below
 
 GRACE_S = 1.0  # an event that begins so soon after a fault's end is still that fault's
 
@@ -47,6 +48,11 @@ class Judgement:
     def false_alarms_per_hour(self) -> float:
         """NaN where there was no healthy time."""
         return len(self.false_alarms) / self.healthy_hours if self.healthy_hours > 0 else float("nan")
+
+    @property
+    def false_alarms_per_hour_below(self) -> float:
+        """Upper limit of the rate with 95 % confidence."""
+        return rate_below(len(self.false_alarms), self.healthy_hours)
 
 
 def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None) -> Judgement:

@@ -7,6 +7,7 @@ from sensorfault.detector import detect
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import DEFAULT, recipe
 from sensorfault.model import Model
+from sensorfault.numerics.poisson import rate_below
 
 HELD_OUT = 0.3
 
@@ -21,7 +22,8 @@ def fit(
     """Fit a method of the catalog on a healthy log.
 
     The last `held_out` share of the log (0 to 0.9) is kept from the fit and judged afterwards: `model.summary` then has
-    `held_out_s`, `held_out_alarms` and `alarms_per_hour`. With 0 all is used and nothing is known of the rate.
+    `held_out_s`, `held_out_alarms`, `alarms_per_hour` and, with 95 % confidence, `alarms_per_hour_below`. With 0 all is
+    used and nothing is known of the rate.
 
     Raises:
         LogError: an unknown method, or a log that it cannot be fitted on.
@@ -43,4 +45,5 @@ def fit(
         alarms = len(detect(model, unseen).events)
         hours = unseen.duration_s / 3600
         summary |= {"held_out_s": unseen.duration_s, "held_out_alarms": alarms, "alarms_per_hour": alarms / hours}
+        summary |= {"alarms_per_hour_below": rate_below(alarms, hours)}
     return replace(model, summary=summary)

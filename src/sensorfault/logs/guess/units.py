@@ -14,7 +14,11 @@ _FAST_M_S = 45.0
 
 def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     """By the usual length of the axes together: gravity is 1 g, 9.8 m/s^2 or 1000 mg."""
-    length = float(np.nanmedian(np.linalg.norm(value, axis=1)))
+    whole = value[np.isfinite(value).all(axis=1)]
+    # axes that never come in one row: the length of their usual values has to do
+    length = float(
+        np.median(np.linalg.norm(whole, axis=1)) if len(whole) else np.linalg.norm(np.nanmedian(value, axis=0))
+    )
     for unit, gravity in (("m/s^2", STANDARD_GRAVITY), ("g", 1.0), ("mg", 1000.0)):
         if 0.8 < length / gravity < 1.25:
             return unit, f"its usual length {length:.4g} is gravity in {unit}"
@@ -23,7 +27,8 @@ def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
 
 def rate_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     """By size: nothing that carries people turns at 200 deg/s for long."""
-    fast = float(np.nanquantile(np.nanmax(np.abs(value), axis=1), 0.95))
+    known = value[np.isfinite(value).any(axis=1)]
+    fast = float(np.quantile(np.nanmax(np.abs(known), axis=1), 0.95))
     unit = "deg/s" if fast > _FAST_RAD_S else "rad/s"
     return unit, f"its 95th percentile is {fast:.3g}; rad/s up to {_FAST_RAD_S:g}, else deg/s"
 
