@@ -209,6 +209,7 @@ class Monitor(eqx.Module):
         stands = ~told.tested & ~out & ~sample.born & (age >= 0) & (age <= self.hold_s)
         old = jnp.where(stands, state.verdict, jnp.int8(UNKNOWN))
         channel = jnp.where(bad, jnp.int8(FAULT), jnp.where(clear, jnp.int8(OK), old))
+        # the largest over a sensor's channels, without a scatter, which no small loop may hold
         mine = jnp.arange(max(self.owner) + 1)[:, None] == jnp.asarray(self.owner)[None]
         sensor = jnp.where(mine, channel[None], jnp.int8(OK)).max(axis=1)
         known = (channel != UNKNOWN).any()

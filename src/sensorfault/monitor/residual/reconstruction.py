@@ -52,6 +52,7 @@ class Reconstruction(eqx.Module):
         change = (trusted - value) / self.half
         own = jnp.eye(len(x))
         exchanged = x[None] + own * change[None]
+        # A sum, since a matrix product of this size would keep the loop around it from being one function.
         h_k = f(a[None] + change[:, None] * self.weights.T)
         copies = (self.output[None] * h_k[:, None]).sum(axis=2) + self.offset[None]
         residual = Residual(
