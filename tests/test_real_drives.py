@@ -1,4 +1,4 @@
-"""The main job on real drives: fit on the first 60 %, lie in the rest, find out.
+"""The main job on real drives: fit paper A's autoencoder on the first 60 %, lie in the rest, find out.
 
 What the methods of this version do not see is written down here too: 20 of its own sigmas stay within the healthy range
 of a channel that is calm for most of a drive and shaken now and then (the pitch rate of both drives, the vertical
@@ -33,10 +33,16 @@ AT_ONCE = 6  # faults in one copy of the rest, with five healthy seconds between
 DRIVES = ("dresden_50hz", "gnss_imu_drive0708")
 IMU = tuple((sensor, axis) for sensor in ("gyro", "accelerometer") for axis in "xyz")
 FAINT = {"dresden_50hz": {("gyro", "y"), ("accelerometer", "z")}, "gnss_imu_drive0708": {("gyro", "y")}}
+AS_PUBLISHED = "elm-autoencoder"
 # Of the untouched rest, measured 2026-11-23: Dresden 0 in 1.4 min. Drive 0708 4 in 3.7 min, which is 66 an hour: two
-# moments of half a second, rougher than any in the part fitted on, each told as two events. So few say little about the
-# rate; the bound keeps it from growing unnoticed.
-ALARMS_AN_HOUR = {"dresden_50hz": 0.0, "gnss_imu_drive0708": 100.0}
+# moments of half a second, rougher than any in the part fitted on, each told as two events. The cross-validated limit
+# stands above both. So few say little about the rate; the bound keeps it from growing unnoticed.
+ALARMS_AN_HOUR = {
+    ("dresden_50hz", AS_PUBLISHED): 0.0,
+    ("gnss_imu_drive0708", AS_PUBLISHED): 100.0,
+    ("dresden_50hz", "elm-cross-validated"): 0.0,
+    ("gnss_imu_drive0708", "elm-cross-validated"): 0.0,
+}
 
 
 @dataclass(frozen=True)
@@ -47,10 +53,10 @@ class Drive:
 
 
 @cache
-def drive(folder: Path) -> Drive:
+def drive(folder: Path, method: str = AS_PUBLISHED) -> Drive:
     log = read(folder)
     cut = float(log.time[0]) + LEARN * log.duration_s
-    model = fit(log.between(end_s=cut), held_out=0.0)
+    model = fit(log.between(end_s=cut), method, held_out=0.0)
     return Drive(model, log.between(cut), detect(model, log.between(cut)))
 
 
@@ -116,14 +122,14 @@ def test_silences_are_found_and_named(name: str, real_data: Path) -> None:
     assert all(o.delay_s <= 5 * period[o.fault.sensor] for o in outcomes)
 
 
-@pytest.mark.parametrize("name", DRIVES)
-def test_false_alarms_on_the_untouched_rest(name: str, real_data: Path) -> None:
-    known = drive(real_data / "road" / name)
+@pytest.mark.parametrize(("name", "method"), ALARMS_AN_HOUR)
+def test_false_alarms_on_the_untouched_rest(name: str, method: str, real_data: Path) -> None:
+    known = drive(real_data / "road" / name, method)
     hours = known.rest.duration_s / 3600
     # The IMU of drive 0708 outlives the last fix by 2.8 s: that silence is so.
     alarms = [event for event in known.clean.events if event.kind != "miss" or event.end_s is not None]
-    print(f"{name}: {len(alarms)} false alarms in {60 * hours:.1f} min, {len(alarms) / hours:.0f} an hour")
-    assert len(alarms) / hours <= ALARMS_AN_HOUR[name]
+    print(f"{name}, {method}: {len(alarms)} false alarms in {60 * hours:.1f} min, {len(alarms) / hours:.0f} an hour")
+    assert len(alarms) / hours <= ALARMS_AN_HOUR[name, method]
 
 
 def test_held_fixes_are_never_a_jam(real_data: Path) -> None:

@@ -30,8 +30,8 @@ def default() -> Model:
 
 
 def test_the_catalog() -> None:
-    assert set(METHODS) == {"elm-autoencoder", "pca"}
-    assert DEFAULT == "elm-autoencoder"
+    assert set(METHODS) == {"elm-autoencoder", "elm-cross-validated", "pca"}
+    assert DEFAULT == "elm-cross-validated"
     for name, recipe in METHODS.items():
         assert recipe.name == name
         assert recipe.title
@@ -105,7 +105,7 @@ def test_progress_is_told_in_words() -> None:
     told: list[str] = []
     fit(log(), progress=told.append)
     assert len(told) == 2
-    assert "elm-autoencoder" in told[0]
+    assert DEFAULT in told[0]
     assert "held out" in told[1]
 
 
@@ -131,7 +131,7 @@ def test_too_few_rows() -> None:
 
 
 def test_an_unknown_method() -> None:
-    assert "elm-autoencoder, pca" in sentence(log(), method="lstm")
+    assert "elm-autoencoder, elm-cross-validated, pca" in sentence(log(), method="lstm")
 
 
 @pytest.mark.parametrize("share", [-0.1, 0.95, 1.0, 5.0, float("nan")])

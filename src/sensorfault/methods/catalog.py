@@ -1,11 +1,12 @@
 """Name -> recipe."""
 
 from sensorfault.logs.table import LogError
-from sensorfault.methods import elm_autoencoder, pca
+from sensorfault.methods import elm_autoencoder, elm_cross_validated, pca
 from sensorfault.methods.recipe import Recipe
 
-METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in (elm_autoencoder.RECIPE, pca.RECIPE)}
-DEFAULT = elm_autoencoder.RECIPE.name
+_RECIPES = elm_autoencoder.RECIPE, elm_cross_validated.RECIPE, pca.RECIPE
+METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
+DEFAULT = elm_cross_validated.RECIPE.name
 
 
 def recipe(name: str) -> Recipe:

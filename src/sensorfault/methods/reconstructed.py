@@ -1,11 +1,8 @@
 """A reconstruction residual made into a monitor: what the autoencoder and its baseline share."""
 
-from collections.abc import Callable
-
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.watch import watchable
@@ -13,11 +10,11 @@ from sensorfault.model import Model, complete, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
-from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
+from sensorfault.training.cross_validation import Fit, largest_unseen_norm
 from sensorfault.training.limits import repeat_limit
 from sensorfault.training.scaling import Scaling
 from sensorfault.training.tapes import score_tape
@@ -27,8 +24,11 @@ READMIT_S = 0.25  # a channel is taken at its own word again so long after the l
 LEAST_ROWS = 50
 
 
-def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], Scaling], Reconstruction]) -> Model:
+def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False) -> Model:
     """Fit on a healthy log: weights, then the limits from a replay with the limits off.
+
+    The largest healthy error is that of the training data, as published; with `cross_validated` that of blocks left out
+    of the fit, if it is larger.
 
     Raises:
         LogError: too few complete rows, or nothing to watch.
@@ -59,11 +59,14 @@ def reconstructed(name: str, log: Log, fit: Callable[[Float[np.ndarray, "N C"], 
         together=False,
     )
     norm, runs = score_tape(deaf, log)
+    # (10) max(err), over the training data
+    largest = np.nanmax(norm, axis=0)
+    if cross_validated:
+        largest = np.maximum(largest, largest_unseen_norm(value, watched, fit, scaling.half))
     monitor = eqx.tree_at(
         lambda m: (m.branches[0].threshold.largest, m.branches[1].threshold.limit),
         deaf,
-        # (10) max(err), over the training data
-        (jnp.asarray(np.nanmax(norm, axis=0)), jnp.asarray(repeat_limit(runs, log.period_s))),
+        (jnp.asarray(largest), jnp.asarray(repeat_limit(runs, log.period_s))),
     )
     tests = (("norm", None), *(("repeats", channel.path) for channel in log.channels))
     told = {"training_log": log.name, "training_s": log.duration_s, "rows": int(rows.sum()), "not_watched": reasons}

@@ -1,0 +1,41 @@
+"""How a reconstruction errs on healthy rows that it was not fitted on."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.numerics.networks import ACTIVATIONS
+from sensorfault.training.scaling import Scaling
+
+BLOCKS = 5
+
+Fit = Callable[[Float[np.ndarray, "N C"], Scaling], Reconstruction]
+
+
+def residual_of(found: Reconstruction, value: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
+    """What a fitted network leaves of each row [SI]."""
+    half = np.asarray(found.half)
+    x = (value - np.asarray(found.center)) / half
+    # (3), (4) x~ = f(x W' + b) beta
+    h = np.asarray(ACTIVATIONS[found.activation](x @ np.asarray(found.weights).T + np.asarray(found.bias)))
+    left = x - (h @ np.asarray(found.output).T + np.asarray(found.offset))
+    return np.where(np.asarray(found.watched), left * half, 0.0)
+
+
+def largest_unseen_norm(
+    value: Float[np.ndarray, "N C"], watched: Bool[np.ndarray, " C"], fit: Fit, scale: Float[np.ndarray, " C"]
+) -> float:
+    """Largest norm of residual / scale over contiguous blocks, each judged by a fit on all the others.
+
+    A network that copies what it has seen errs far more just outside: its largest training error says little of that.
+    """
+    norms = []
+    for block in np.array_split(np.arange(len(value)), BLOCKS):
+        rest = np.delete(value, block, axis=0)
+        found = fit(rest, Scaling.of(rest, watched))
+        norms.append(float(np.linalg.norm(residual_of(found, value[block]) / scale, axis=1).max()))
+    return max(norms)
