@@ -68,9 +68,11 @@ def command(out: Path, method: str, seed: int, json_path: str | None) -> None:
     show.events(found.events, "Fault events (simulated drive, injected faults)", json_path != "-")
     right = sum(outcome.channel_right and outcome.kind_right for outcome in verdict.outcomes)
     seen = sum(outcome.found for outcome in verdict.outcomes)
+    innocents = sum(outcome.innocents for outcome in verdict.outcomes)
     show.say(
         f"\n{seen} of {len(verdict.outcomes)} injected faults found, {right} with sensor, channel and kind right; "
-        f"{len(verdict.false_alarms)} false alarms in {verdict.healthy_hours * 60:.1f} healthy minutes."
+        f"{innocents} events on healthy channels meanwhile, {len(verdict.false_alarms)} false alarms in "
+        f"{verdict.healthy_hours * 60:.1f} healthy minutes."
     )
     for sentence in work.not_watched(model):
         show.say(sentence)

@@ -20,7 +20,7 @@ from sensorfault.training.scaling import Scaling
 from sensorfault.training.tapes import score_tape
 
 REBUILD_S = 10.0  # a stand-in is believed for so long
-READMIT_S = 0.25  # a channel is taken at its own word again so long after the last accusation
+READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
 LEAST_ROWS = 50
 
 
