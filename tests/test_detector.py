@@ -244,7 +244,8 @@ def test_a_log_of_another_rate(factor: float) -> None:
 @pytest.mark.parametrize("factor", [0.55, 1.9])
 def test_a_log_of_nearly_the_rate_will_do(factor: float) -> None:
     log = fitted.unseen().between(end_s=110.0)
-    detect(fitted.model(), replace(log, time=log.time * factor))
+    found = detect(fitted.model(), replace(log, time=log.time * factor))
+    assert (found.channel[:, :6] != UNKNOWN).all()
 
 
 def test_live_refuses_what_is_no_next_sample() -> None:

@@ -155,7 +155,9 @@ def test_a_forgotten_block_is_not_the_last_one():
 def test_an_empty_block_is_no_block():
     """Once: push(block=()) raised 'need at least one array', though () is what 'no block' is elsewhere."""
     with jax.numpy_dtype_promotion("standard"):
-        Stepper(cases()[0].monitor).push(0.0, [1.0, 1.0, 1.0], True, ())
+        stepper = Stepper(cases()[0].monitor)
+        said, same = (stepper.push(t, [1.0, 1.0, 1.0], True, *block) for t, block in ((0.0, ()), (0.1, ((),))))
+        assert len(said.channel) == len(same.channel) == 3
 
 
 def test_too_few_values_are_refused():
