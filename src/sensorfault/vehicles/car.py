@@ -1,0 +1,115 @@
+"""A car: which channels say how it moves, and the kinematic bicycle that it moves as."""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from sensorfault.logs.table import Channel, Log
+from sensorfault.logs.units import si_unit
+
+LEAST_SPEED = 2.0  # below this a course means little [m/s]
+
+
+@dataclass(frozen=True)
+class Roles:
+    """Columns of a log by what they say of a car's motion; None where the log does not say it.
+
+    Velocity over ground is `north` and `east`, or `speed` and `course` (clockwise from north). `gyro` and
+    `accelerometer` are the columns of x, y and z. `steering` is the angle of the steering wheel or of the front wheels.
+    """
+
+    latitude: int | None = None
+    longitude: int | None = None
+    speed: int | None = None
+    course: int | None = None
+    north: int | None = None
+    east: int | None = None
+    steering: int | None = None
+    gyro: tuple[int, int, int] | None = None
+    accelerometer: tuple[int, int, int] | None = None
+
+    @property
+    def position(self) -> tuple[int, int] | None:
+        """Columns of latitude and longitude."""
+        return None if self.latitude is None or self.longitude is None else (self.latitude, self.longitude)
+
+    @property
+    def velocity(self) -> tuple[int, int] | None:
+        """Columns of the velocity over ground: north and east, else speed and course."""
+        if self.north is not None and self.east is not None:
+            return self.north, self.east
+        return None if self.speed is None or self.course is None else (self.speed, self.course)
+
+    @property
+    def polar(self) -> bool:
+        """Whether `velocity` is speed and course."""
+        return self.north is None or self.east is None
+
+    def lacking(self, *names: str) -> str:
+        """What is missing of these roles, in words; empty if nothing is."""
+        return ", ".join(name for name in names if getattr(self, name) is None)
+
+
+def roles(log: Log) -> Roles:
+    """The first channel of each name and unit, in the log's order."""
+    found: dict[str, int] = {}
+    for name, unit in _NAMES.items():
+        for i, channel in enumerate(log.channels):
+            if channel.name in (name, *_ALSO.get(name, ())) and si_unit(channel.unit) == unit:
+                found.setdefault(name, i)
+    return Roles(**found, gyro=_axes(log.channels, "rad/s"), accelerometer=_axes(log.channels, "m/s^2"))
+
+
+_NAMES = {
+    "latitude": "rad",
+    "longitude": "rad",
+    "speed": "m/s",
+    "course": "rad",
+    "north": "m/s",
+    "east": "m/s",
+    "steering": "rad",
+}
+_ALSO = {"steering": ("steering_angle", "angle")}
+
+
+def _axes(channels: tuple[Channel, ...], unit: str) -> tuple[int, int, int] | None:
+    """Columns of x, y and z of the first sensor that has all three in this unit."""
+    for sensor in dict.fromkeys(channel.sensor for channel in channels):
+        at = {c.name: i for i, c in enumerate(channels) if c.sensor == sensor and si_unit(c.unit) == unit}
+        if {"x", "y", "z"} <= at.keys():
+            return at["x"], at["y"], at["z"]
+    return None
+
+
+def ground_velocity(first: Float[Array, ""], second: Float[Array, ""], polar: bool) -> Float[Array, "2"]:
+    """East and north [m/s] of speed and course, or of north and east."""
+    if polar:
+        return first * jnp.stack([jnp.sin(second), jnp.cos(second)])
+    return jnp.stack([second, first])
+
+
+def bicycle(
+    state: Float[Array, "4"], acceleration: Float[Array, ""], curvature: Float[Array, ""], dt: Float[Array, ""]
+) -> Float[Array, "4"]:
+    """One step of the kinematic bicycle: [x, y, heading φ, speed v] [m, m, rad, m/s].
+
+    Min et al. 2021, equation (16); of (17), whose matrix form divides by x, the additive form. `curvature` is
+    tan(front wheel angle) / wheelbase [1/m], or yaw rate / speed; φ counts from x to y.
+    """
+    x, y, phi, v = state
+    # (16) x⁺ = x + Δt v cos φ,  y⁺ = y + Δt v sin φ,  φ⁺ = φ + Δt v tan(δ) / l,  v⁺ = v + Δt a
+    return jnp.stack(
+        [x + dt * v * jnp.cos(phi), y + dt * v * jnp.sin(phi), phi + dt * v * curvature, v + dt * acceleration]
+    )
+
+
+def moving(log: Log, found: Roles, speed: float = LEAST_SPEED) -> Float[np.ndarray, " N"]:
+    """Times at which a new velocity is above `speed` [s]; empty for a drive that never moves."""
+    if found.velocity is None:
+        return np.zeros(0)
+    first, second = (log.value[:, i] for i in found.velocity)
+    size = np.abs(first) if found.polar else np.hypot(first, second)
+    times: Float[np.ndarray, " N"] = log.time[log.fresh[:, found.velocity[0]] & (size > speed)]
+    return times
