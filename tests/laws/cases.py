@@ -17,6 +17,7 @@ from sensorfault.methods.reconstructed import READMIT_S
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.run import samples
 from sensorfault.simulation.road import drive
+from sensorfault.training.session import Session
 
 IMU = [f"{sensor}.{axis}" for sensor in ("gyro", "accelerometer") for axis in "xyz"]
 
@@ -29,7 +30,7 @@ def recipes() -> list[Case]:
     lie = 40 * log.value.std(axis=0)
     made = []
     for name, recipe in METHODS.items():
-        monitor = recipe.build(log.between(end_s=240.0), 0).monitor
+        monitor = recipe.build(log.between(end_s=240.0), 0, Session()).monitor
         permuted = functools.partial(_permuted, monitor)
         made.append(Case(name, monitor, rows, lie, READMIT_S, permuted=permuted))
     return made

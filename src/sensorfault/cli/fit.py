@@ -14,6 +14,11 @@ from sensorfault.cli import options, show, work
 @options.out_option(None, "The model file to write.  [default: NAME.sensorfault here]")
 @click.option("--until", "until_s", type=float, help="Use the log only up to this time [s].")
 @click.option("--held-out", default=0.3, show_default=True, help="Share, from the end, to judge instead of fit.")
+@click.option(
+    "--checkpoint",
+    type=click.Path(path_type=Path),
+    help="For methods trained by epochs: written after each epoch, gone on from if it is there.",
+)
 @options.seed_option
 @options.json_option
 def command(
@@ -23,6 +28,7 @@ def command(
     out: Path | None,
     until_s: float | None,
     held_out: float,
+    checkpoint: Path | None,
     seed: int,
     json_path: str | None,
 ) -> None:
@@ -32,13 +38,13 @@ def command(
     from sensorfault.store import save
 
     recipe(method)
-    work.check_outputs([out, json_path], [log, vehicle])
+    work.check_outputs([out, json_path, checkpoint], [log, vehicle])
     table = work.read_log(log, vehicle)
     if until_s is not None:
         table = table.between(end_s=until_s)
     with show.progress() as bar:
         task = bar.add_task(f"fitting {method}", total=None)
-        model = fit(table, method, held_out, seed, lambda doing: bar.update(task, description=doing))
+        model = fit(table, method, held_out, seed, lambda doing: bar.update(task, description=doing), checkpoint)
         bar.update(task, total=1, completed=1, description=f"fitted {method}")
     target = out or Path(f"{table.name}.sensorfault")
     save(model, target)

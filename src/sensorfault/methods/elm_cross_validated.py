@@ -5,9 +5,10 @@ from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.reconstructed import reconstructed
 from sensorfault.model import Model
 from sensorfault.training.elm import fit_elm
+from sensorfault.training.session import Session
 
 
-def _build(log: Log, seed: int) -> Model:
+def _build(log: Log, seed: int, session: Session) -> Model:
     return reconstructed(
         RECIPE.name,
         log,

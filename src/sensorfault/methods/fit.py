@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 from sensorfault.detector import detect
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import DEFAULT, recipe
 from sensorfault.model import Model
 from sensorfault.numerics.poisson import rate_below
+from sensorfault.training.session import Session
 
 HELD_OUT = 0.3
 
@@ -18,30 +20,32 @@ def fit(
     held_out: float = HELD_OUT,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
+    checkpoint: Path | None = None,
 ) -> Model:
     """Fit a method of the catalog on a healthy log.
 
     The last `held_out` share of the log (0 to 0.9) is kept from the fit and judged afterwards: `model.summary` then has
     `held_out_s`, `held_out_alarms`, `alarms_per_hour` and, with 95 % confidence, `alarms_per_hour_below`. With 0 all is
-    used and nothing is known of the rate.
+    used and nothing is known of the rate. `progress` is told what is being done. `checkpoint`: a file that a training
+    by epochs writes after each, and goes on from if it is there.
 
     Raises:
-        LogError: an unknown method, or a log that it cannot be fitted on.
+        LogError: an unknown method, a log that it cannot be fitted on, or a checkpoint of another fit.
     """
     if not 0 <= held_out <= 0.9:
         raise LogError(f"held_out is {held_out:g}; give the share of the log to keep for judging, 0 to 0.9.")
     if len(log) < 2:
         raise LogError(f"{log.name} has {len(log)} rows; give a log of at least a few seconds.")
-    tell = progress or (lambda _: None)
+    session = Session(progress, checkpoint) if progress else Session(checkpoint=checkpoint)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s
-    tell(f"fitting {method}")
+    session.tell(f"fitting {method}")
     unseen = log.between(cut)
     if held_out and len(unseen) < 2:
         raise LogError(f"held_out is {held_out:g}, which keeps no two rows of {log.name} to judge; give more, or 0.")
-    model = recipe(method).build(log.between(end_s=cut) if held_out else log, seed)
+    model = recipe(method).build(log.between(end_s=cut) if held_out else log, seed, session)
     summary = model.summary | {"seed": seed}
     if held_out:
-        tell("judging the part held out")
+        session.tell("judging the part held out")
         alarms = len(detect(model, unseen).events)
         hours = unseen.duration_s / 3600
         summary |= {"held_out_s": unseen.duration_s, "held_out_alarms": alarms, "alarms_per_hour": alarms / hours}

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 from sensorfault.logs.table import Log
 from sensorfault.model import Model
+from sensorfault.training.session import Session
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """`build(log, seed)` fits every part on a healthy log.
+    """`build(log, seed, session)` fits every part on a healthy log.
 
     `promise` states the designed false-alarm rate in words, or that there is none.
     """
@@ -18,4 +19,4 @@ class Recipe:
     title: str
     source: str
     promise: str
-    build: Callable[[Log, int], Model]
+    build: Callable[[Log, int, Session], Model]

@@ -1,0 +1,19 @@
+"""What a fit may do besides fitting: say how far it is, and leave a checkpoint to go on from."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+
+def _silent(_: str) -> None:
+    """Nobody listens."""
+
+
+@dataclass(frozen=True)
+class Session:
+    """`tell` is given what is being done, in a few words. `checkpoint`: written while a network is trained by epochs,
+    and gone on from if it is there; a method that is fitted in one stroke writes none.
+    """
+
+    tell: Callable[[str], None] = _silent
+    checkpoint: Path | None = None
