@@ -46,6 +46,7 @@ class Drive:
         sample: int | None = None,
         score: float | None = None,
         measured: float | None = None,
+        motion: int = UNKNOWN,
     ) -> None:
         """One tick `gap_s` after the last; `accused`: residual by channel. The fix comes with every fifth."""
         accused = accused or {}
@@ -65,6 +66,7 @@ class Drive:
             channel=verdict,
             sensor=np.array([verdict[:2].max(), verdict[2:].max()]),
             sample=(FAULT if accused else OK) if sample is None else sample,
+            motion=motion,
             score=np.array([top, np.nan]),
             limit=np.array([2.0, 7.0]),
             value=value,
@@ -115,6 +117,18 @@ def test_one_event_from_first_to_last_faulty_sample() -> None:
     assert (event.sensor, event.channel, event.kind, event.subject, event.method) == (
         *("gyro", "x", "bias", "sensor", "hand"),
     )
+
+
+def test_a_motion_that_cannot_be_is_no_sensors_fault() -> None:
+    drive = Drive().run(50, motion=OK).run(30, motion=FAULT, score=9.0)
+    (open_,) = drive.tracker.open()
+    assert (open_.start_s, open_.end_s, open_.subject, open_.sensor, open_.kind) == (
+        *(at(50), None, "motion", None, "unknown"),
+    )
+    assert open_.peak_score is None  # the score was that of another test
+    event = drive.quiet().only()
+    assert event == replace(open_, end_s=event.end_s)
+    assert event.end_s == at(79)
 
 
 def test_it_ends_only_after_quiet_time() -> None:

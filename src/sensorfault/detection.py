@@ -11,7 +11,10 @@ from sensorfault.logs.table import Log
 
 @dataclass(frozen=True)
 class Trace:
-    """One test over time: its score and limit, NaN where it had nothing to test. `channel` is None for a joint test."""
+    """One test over time: its score and limit, NaN where it had nothing to test.
+
+    `channel` is None for a joint test, "motion" for one of the vehicle's motion.
+    """
 
     name: str
     channel: str | None
@@ -23,6 +26,7 @@ class Trace:
 class Detection:
     """Verdicts (OK 0, UNKNOWN 1, FAULT 2) on every tick of `log`, the tests behind them, and the fault events.
 
+    `motion` is the verdict on the vehicle's motion, where the method judges it.
     `watched` says which channels were judged; of the others only silence was noticed.
     `repaired` is `log.value` with stand-ins where a channel was rebuilt, NaN where there was nothing to say [SI].
     """
@@ -33,6 +37,7 @@ class Detection:
     channel: Int8[np.ndarray, "T C"]
     sensor: Int8[np.ndarray, "T S"]
     sample: Int8[np.ndarray, " T"]
+    motion: Int8[np.ndarray, " T"]
     repaired: Float[np.ndarray, "T C"]
     traces: tuple[Trace, ...]
     events: tuple[Event, ...]

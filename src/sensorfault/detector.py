@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 from sensorfault.detection import Detection, Trace
 from sensorfault.events import Event
 from sensorfault.logs.table import Log
-from sensorfault.model import Model
+from sensorfault.model import MOTION, Model
 from sensorfault.replay import Progress, Replayed, replay_log
 from sensorfault.run import Now, Stepper
 from sensorfault.tracker import QUIET_S, Tracker, Watch
@@ -33,6 +33,7 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
         channel=np.asarray(told.channel),
         sensor=np.asarray(told.sensor),
         sample=np.asarray(told.sample),
+        motion=np.asarray(told.motion),
         repaired=repaired,
         traces=_traces(model, told),
         events=tuple(_events(model, log, told)),
@@ -81,7 +82,7 @@ class Live:
         gap_s, self._time = (0.0 if self._time is None else float(time - self._time)), float(time)
         # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
         silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()
-        if now.sample == FAULT or silent or not self._begun or self._tracker.busy():
+        if FAULT in (now.sample, now.motion) or silent or not self._begun or self._tracker.busy():
             self._begun = True
             self.events += self._tracker.push(self._time, gap_s, np.asarray(value, float), now)
         return now
@@ -107,7 +108,7 @@ def _watch(model: Model) -> Watch:
         model.period_s,
         model.silent_after_s,
         np.asarray(model.sigma),
-        tuple(None if path is None else paths.index(path) for _, path in model.tests),
+        tuple(path if path in (None, MOTION) else paths.index(path) for _, path in model.tests),
         model.tick_s,
     )
 
@@ -120,6 +121,7 @@ def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
         told.channel,
         told.sensor,
         told.sample,
+        told.motion,
         score,
         limit,
         told.value,
@@ -130,7 +132,7 @@ def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
     arrays = [np.asarray(column) for column in columns]
     gap_s = np.diff(log.time, prepend=log.time[:1])
     silent = (gap_s > watch.hole_s) | (np.asarray(told.silence) > watch.silent_after_s).any(axis=1)
-    marked = (np.asarray(told.sample) == FAULT) | silent
+    marked = (np.asarray(told.sample) == FAULT) | (np.asarray(told.motion) == FAULT) | silent
     ended: list[Event] = []
     for i in _interesting(log.time, marked):
         now = Now(*(array[i] for array in arrays))

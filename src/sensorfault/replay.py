@@ -29,6 +29,7 @@ class Replayed(NamedTuple):
     channel: Int8[Numbers, "T C"]
     sensor: Int8[Numbers, "T S"]
     sample: Int8[Numbers, " T"]
+    motion: Int8[Numbers, " T"]
     scores: tuple[Float[Numbers, "T K"], ...]
     limits: tuple[Float[Numbers, "T K"], ...]
     residual: Float[Numbers, "T C"]
@@ -43,6 +44,7 @@ def _keep(report: Report) -> Replayed:
         report.verdict.channel,
         report.verdict.sensor,
         report.verdict.sample,
+        report.verdict.motion,
         tuple(jnp.where(score.valid, score.value, jnp.nan) for score in report.scores),
         report.limits,
         report.residual.value,

@@ -69,6 +69,7 @@ class Now(NamedTuple):
     channel: Int8[np.ndarray, " C"]
     sensor: Int8[np.ndarray, " S"]
     sample: int
+    motion: int  # of the vehicle
     score: Float[np.ndarray, " K"]  # of all branches, one after the other; NaN where there was nothing to test
     limit: Float[np.ndarray, " K"]
     value: Float[np.ndarray, " C"]  # measured, or its stand-in [SI]
@@ -82,6 +83,7 @@ def _tell(report: Report) -> tuple[Array, ...]:
         report.verdict.channel,
         report.verdict.sensor,
         report.verdict.sample,
+        report.verdict.motion,
         jnp.concatenate([jnp.where(score.valid, score.value, jnp.nan) for score in report.scores]),
         jnp.concatenate(report.limits),
         report.trust.value,
@@ -154,15 +156,8 @@ class Stepper:
             tail[:] = np.concatenate(parts)
         self._state, told = self._step(self._state, row)
         answer = np.asarray(told)
-        channel, sensor, sample, score, limit, filled, residual, valid, silence = (answer[cut] for cut in self._cuts)
-        return Now(
-            channel.astype(np.int8),
-            sensor.astype(np.int8),
-            int(sample[0]),
-            score,
-            limit,
-            filled,
-            residual,
-            valid > 0,
-            silence,
+        channel, sensor, sample, motion, score, limit, value, residual, valid, silence = (
+            answer[cut] for cut in self._cuts
         )
+        verdicts = channel.astype(np.int8), sensor.astype(np.int8), int(sample[0]), int(motion[0])
+        return Now(*verdicts, score, limit, value, residual, valid > 0, silence)

@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from sensorfault.events import Event
 from sensorfault.kind import Shape
+from sensorfault.model import MOTION
 from sensorfault.run import Now
 from sensorfault.types import FAULT
 
@@ -18,7 +19,8 @@ GAP_S = 1.0  # a shorter hole in the log is the recorder's jitter, not a fault
 class Watch:
     """What the tracker must know of a model, channel by channel.
 
-    `tests[k]`: the column of the channel that test k examines alone, None for a joint test. `tick_s`: the clock; where
+    `tests[k]`: the column of the channel that test k examines alone, None for a joint test, MOTION for one of the
+    vehicle's motion. `tick_s`: the clock; where
     it stands still for longer than three ticks there is a hole in the log, which is nobody's silence.
     """
 
@@ -28,7 +30,7 @@ class Watch:
     period_s: Float[np.ndarray, " C"]
     silent_after_s: Float[np.ndarray, " C"]
     sigma: Float[np.ndarray, " C"]  # of the healthy residual [SI]
-    tests: tuple[int | None, ...]
+    tests: tuple[int | str | None, ...]
     tick_s: float
 
     @property
@@ -47,12 +49,15 @@ class _Open:
     limit: float = float("nan")
 
 
+_Accused = int | str | None  # a channel, MOTION, or nobody known
+
+
 class Tracker:
     """Turns one row after the other into events. A healthy row while nothing is open changes nothing."""
 
     def __init__(self, watch: Watch) -> None:
         self._watch = watch
-        self._open: dict[int | None, _Open] = {}
+        self._open: dict[_Accused, _Open] = {}
         self._silent: dict[tuple[str, str | None], _Open] = {}
         self._first: float | None = None
         self._holes: list[tuple[float, float]] = []  # (end, length) of those that may lie in somebody's silence [s]
@@ -82,15 +87,17 @@ class Tracker:
         over = {c: one for c, one in self._open.items() if time - one.last_s > QUIET_S}
         for c in over:
             del self._open[c]
-        accused: list[int | None] = list(np.flatnonzero(now.channel == FAULT).tolist())
+        accused: list[_Accused] = list(np.flatnonzero(now.channel == FAULT).tolist())
         if now.sample == FAULT and not accused:
             accused = [None]
+        if now.motion == FAULT:
+            accused.append(MOTION)
         for c in accused:
             one = self._open.setdefault(c, _Open(time, time))
             one.last_s = time
             self._peak(c, one, now)
         for c, one in self._open.items():
-            if c is None or not now.valid[c]:
+            if not isinstance(c, int) or not now.valid[c]:
                 continue
             one.since.append((time, float(measured[c]), float(now.residual[c])))
             if c in accused:
@@ -98,7 +105,7 @@ class Tracker:
                 one.since.clear()
         return self._together([(c, self._fault(c, one, one.last_s)) for c, one in over.items()])
 
-    def _together(self, found: list[tuple[int | None, Event]]) -> list[Event]:
+    def _together(self, found: list[tuple[_Accused, Event]]) -> list[Event]:
         """One event for a sensor whose channels all showed the same kind and ended together."""
         told = [event for _, event in found]
         for sensor, channels in self._of.items():
@@ -111,9 +118,9 @@ class Tracker:
             told.append(replace(worst, start_s=start_s, channel=None))
         return told
 
-    def _peak(self, c: int | None, one: _Open, now: Now) -> None:
-        """The largest excess of a joint test, or of one on this channel."""
-        mine = np.array([test is None or test == c for test in self._watch.tests])
+    def _peak(self, c: _Accused, one: _Open, now: Now) -> None:
+        """The largest excess of a joint test, or of one on this channel; of the motion's own tests if it is that."""
+        mine = np.array([test == c or (test is None and c != MOTION) for test in self._watch.tests])
         with np.errstate(divide="ignore", invalid="ignore"):
             excess = np.where(mine & (now.score > now.limit), now.score / np.maximum(now.limit, 1e-300), -np.inf)
         k = int(np.argmax(excess))
@@ -121,11 +128,14 @@ class Tracker:
         if excess[k] > old:
             one.score, one.limit = float(now.score[k]), float(now.limit[k])
 
-    def _fault(self, c: int | None, one: _Open, end_s: float | None) -> Event:
+    def _fault(self, c: _Accused, one: _Open, end_s: float | None) -> Event:
         watch = self._watch
-        kind = "unknown" if c is None else one.shape.kind(float(watch.period_s[c]), float(watch.sigma[c]))
-        sensor, channel = (None, None) if c is None else (watch.sensor[c], watch.channel[c])
         score, limit = (x if np.isfinite(x) else None for x in (one.score, one.limit))
+        if not isinstance(c, int):
+            subject = "motion" if c == MOTION else "sensor"
+            return Event(one.start_s, end_s, subject, None, None, "unknown", score, limit, watch.method)
+        kind = one.shape.kind(float(watch.period_s[c]), float(watch.sigma[c]))
+        sensor, channel = watch.sensor[c], watch.channel[c]
         return Event(one.start_s, end_s, "sensor", sensor, channel, kind, score, limit, watch.method)
 
     def _silences(self, time: float, gap_s: float, silence: Float[np.ndarray, " C"]) -> list[Event]:

@@ -62,7 +62,7 @@ class Score(NamedTuple):
 
 
 class Evidence(NamedTuple):
-    """All tests of one sample, branch by branch, as the decision sees them.
+    """All tests of one sample that judge sensors, branch by branch, as the decision sees them.
 
     `gates[b]`: whether an alarm of branch b may keep this sample out of a filter (a window's alarm may not).
     `certain[b]`: whether it accuses by itself, whatever the other channels say (an exact repeat does). `struck`:
@@ -99,14 +99,16 @@ class Accusation(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """OK, UNKNOWN or FAULT for each channel, each sensor and the sample.
+    """OK, UNKNOWN or FAULT for each channel, each sensor and the sample, and for the motion of the vehicle.
 
-    A sample at FAULT with no sensor at FAULT means: something is wrong, unknown which.
+    A sample at FAULT with no sensor at FAULT means: something is wrong, unknown which. A motion at FAULT means that
+    healthy sensors saw the vehicle do what it cannot (skid, slip, be towed); it is no fault of the sample.
     """
 
     channel: Int8[Array, " C"]
     sensor: Int8[Array, " S"]
     sample: Int8[Array, ""]
+    motion: Int8[Array, ""]
 
 
 class Trust(NamedTuple):

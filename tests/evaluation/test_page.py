@@ -107,7 +107,14 @@ def drive(seconds: float = 60, name: str = "drive", gyro: str = "gyro") -> Detec
         Trace("repeats", "x", np.zeros(rows), np.full(rows, np.inf)),
     )
     traces[1].score[500] = 50
-    return Detection(log, "elm", (True, True, False), channel, sensor, sensor.max(axis=1), repaired, traces, events)
+    return Detection(
+        log, "elm", (True, True, False), channel, sensor, sensor.max(axis=1), still(rows), repaired, traces, events
+    )
+
+
+def still(rows: int) -> np.ndarray:
+    """The verdict of a method that does not judge how the vehicle moves."""
+    return np.full(rows, UNKNOWN, np.int8)
 
 
 TRUTH = (
@@ -411,7 +418,9 @@ def test_log_of_one_row_that_never_spoke(tmp_path):
         np.zeros(1), np.full((1, 1), np.nan), np.zeros((1, 1), dtype=bool), (Channel("x", "a"),), (Sensor("a", np.nan),)
     )
     verdict = np.ones((1, 1), dtype=np.int8)
-    seen = written(tmp_path, Detection(log, "pca", (False,), verdict, verdict, verdict[:, 0], log.value, (), ()))
+    seen = written(
+        tmp_path, Detection(log, "pca", (False,), verdict, verdict, verdict[:, 0], still(1), log.value, (), ())
+    )
     assert seen.figures["signals-0"]["data"] == []
     assert "never spoke" in seen.figures["signals-0"]["layout"]["annotations"][0]["text"]
     assert seen.figures["verdicts"]["layout"]["xaxis"]["range"] == [-0.5, 0.5]
@@ -451,7 +460,8 @@ def test_an_hour_of_twelve_channels_is_a_small_page():
     limit = np.full(rows, 3.0)
     traces = tuple(Trace("norm", c.path, np.abs(value[:, i]), limit) for i, c in enumerate(channels))
     events = tuple(Event(25.0 * i, 25.0 * i + 20, "sensor", "gyro", "x", "bias", 9.0, 3.0, "elm") for i in range(140))
-    detection = Detection(log, "elm", (True,) * 12, verdict, verdict[:, ::3], verdict[:, 0], value, traces, events)
+    verdicts = verdict, verdict[:, ::3], verdict[:, 0], still(rows)
+    detection = Detection(log, "elm", (True,) * 12, *verdicts, value, traces, events)
     assert len(json.dumps(figures(detection))) < 12e6
 
 

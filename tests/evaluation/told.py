@@ -7,6 +7,7 @@ import numpy as np
 from sensorfault.detection import Detection
 from sensorfault.events import Event
 from sensorfault.logs.table import Channel, Log, Sensor
+from sensorfault.types import UNKNOWN
 
 TICK_S = 0.1
 CHANNELS = (Channel("x", "gyro"), Channel("y", "gyro"), Channel("east", "gnss"))
@@ -41,6 +42,7 @@ def detection(events: Sequence[Event] = (), log: Log | None = None, repaired: np
         channel=verdict,
         sensor=verdict[:, :2],
         sample=verdict[:, 0],
+        motion=np.full(len(verdict), UNKNOWN, np.int8),
         repaired=log.value if repaired is None else repaired,
         traces=(),
         events=tuple(events),

@@ -10,7 +10,7 @@ from sensorfault.detection import Detection
 from sensorfault.evaluation.page_figure import FOOT, Json, time_axis
 from sensorfault.evaluation.page_lines import runs
 from sensorfault.evaluation.page_marks import whole
-from sensorfault.evaluation.page_words import clock, found
+from sensorfault.evaluation.page_words import MOTION, clock, found
 from sensorfault.faults.fault import Fault
 from sensorfault.types import FAULT, OK, UNKNOWN, VERDICTS
 
@@ -32,11 +32,13 @@ Bar = tuple[float, float, int, str]  # from, to [s], lane, text
 
 
 def lanes(detection: Detection) -> list[tuple[str, Int8[np.ndarray, " T"]]]:
-    """Name and verdicts of every sensor; and of the whole, where it was faulty and nobody could be named."""
+    """Name and verdicts of every sensor; of the whole, where it was faulty and nobody could be named; of the motion."""
     named = [(sensor.name, detection.sensor[:, i]) for i, sensor in enumerate(detection.log.sensors)]
     nameless = (detection.sample == FAULT) & (detection.sensor.max(axis=1, initial=OK) < FAULT)
     if nameless.any():
         named.append(("unknown which", np.where(nameless, FAULT, OK).astype(np.int8)))
+    if (detection.motion != UNKNOWN).any():
+        named.append((MOTION, detection.motion))
     return named
 
 

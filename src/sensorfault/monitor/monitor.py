@@ -23,23 +23,35 @@ from sensorfault.types import (
     Verdict,
 )
 
+SUBJECTS = ("sensor", "motion")
+
 
 class Branch(eqx.Module):
     """One way of judging the residual: a test statistic and its threshold.
 
     `gates`: an alarm of this branch may keep the present sample out of the filter. A window's alarm must not: it is
     about the past. `certain`: it accuses by itself (an exact repeat), so all it accuses are taken out at once, before
-    the largest of the others is looked for.
+    the largest of the others is looked for. `subject`: "motion" for a branch that judges the vehicle instead of its
+    sensors, which says nothing while a sensor is at fault nor for `memory_s` after [s].
     """
 
     statistic: Stage[Any, Residual, Score, Any]
     threshold: Stage[Any, tuple[Residual, Score], Float[Array, " K"], Any]
     gates: bool = eqx.field(static=True, default=True)
     certain: bool = eqx.field(static=True, default=False)
+    subject: str = eqx.field(static=True, default="sensor")
+    memory_s: float = eqx.field(static=True, default=0.0)
+
+    def __check_init__(self) -> None:
+        if self.subject not in SUBJECTS:
+            raise ValueError(f"branch: subject is '{self.subject}'; take one of {', '.join(SUBJECTS)}")
 
 
 class MonitorState(NamedTuple):
-    """The states of the parts; of each channel the last value and its time, the last verdict and its test's time."""
+    """The states of the parts; of each channel the last value and its time, the last verdict and its test's time.
+
+    Of the motion the last verdict and its time, and when a sensor was last at fault.
+    """
 
     residual: Any
     branches: tuple[tuple[Any, Any], ...]
@@ -49,6 +61,9 @@ class MonitorState(NamedTuple):
     seen: Float[Array, " C"]
     verdict: Int8[Array, " C"]
     tested: Float[Array, " C"]
+    motion: Int8[Array, ""]
+    moved: Float[Array, ""]
+    troubled: Float[Array, ""]
 
 
 class _Judgement(NamedTuple):
@@ -92,6 +107,9 @@ class Monitor(eqx.Module):
             jnp.full(channels, NEVER, float),
             jnp.full(channels, UNKNOWN, jnp.int8),
             jnp.full(channels, NEVER, float),
+            jnp.asarray(UNKNOWN, jnp.int8),
+            jnp.asarray(NEVER, float),
+            jnp.asarray(NEVER, float),
         )
 
     def step(self, state: MonitorState, sample: Sample) -> tuple[MonitorState, Report]:
@@ -106,6 +124,9 @@ class Monitor(eqx.Module):
         first = self._judge(state, residual, nobody)
         told, decided, struck, out = self._exclude(state, residual, first)
         verdict, tested, gated = self._verdict(state, sample, told, struck, out)
+        troubled = jnp.where(verdict.sample == FAULT, sample.time, state.troubled)
+        motion, moved = self._motion(state, sample, first, troubled)
+        verdict = verdict._replace(motion=motion)
         trust, recovered = self.recovery.evaluate(state.recovery, (sample, residual, verdict, gated))
         trust = trust._replace(learn=trust.learn & ~told.suspect)
 
@@ -123,6 +144,9 @@ class Monitor(eqx.Module):
             seen=jnp.where(arrived, sample.time, state.seen),
             verdict=verdict.channel,
             tested=tested,
+            motion=motion,
+            moved=moved,
+            troubled=troubled,
         )
         return after, Report(residual, first.scores, first.limits, verdict, trust, silence)
 
@@ -143,12 +167,13 @@ class Monitor(eqx.Module):
             scores.append(score._replace(valid=score.valid & ~jnp.isnan(score.value) & ~jnp.isnan(limit)))
             limits.append(limit)
             pending.append((s, t))
+        of_sensors = [i for i, branch in enumerate(self.branches) if branch.subject == "sensor"]
         evidence = Evidence(
             time=residual.time,
-            scores=tuple(scores),
-            limits=tuple(limits),
-            gates=tuple(branch.gates for branch in self.branches),
-            certain=tuple(branch.certain for branch in self.branches),
+            scores=tuple(scores[i] for i in of_sensors),
+            limits=tuple(limits[i] for i in of_sensors),
+            gates=tuple(self.branches[i].gates for i in of_sensors),
+            certain=tuple(self.branches[i].certain for i in of_sensors),
             struck=struck,
             born=residual.born,
         )
@@ -216,4 +241,22 @@ class Monitor(eqx.Module):
         wrong = told.hit | (channel == FAULT).any()
         whole = jnp.where(wrong, jnp.int8(FAULT), jnp.where(known, jnp.int8(OK), jnp.int8(UNKNOWN)))
         tested = jnp.where(told.tested, sample.time, state.tested)
-        return Verdict(channel, sensor, whole), tested, told.gated | out | left
+        return Verdict(channel, sensor, whole, state.motion), tested, told.gated | out | left
+
+    def _motion(
+        self, state: MonitorState, sample: Sample, judged: _Judgement, troubled: Float[Array, ""]
+    ) -> tuple[Int8[Array, ""], Float[Array, ""]]:
+        """The verdict on the vehicle's motion, by tests whose evidence no faulty sensor touched, and its time."""
+        tested = wrong = jnp.zeros((), bool)
+        spoiled = jnp.zeros((), bool)
+        for branch, score, limit in zip(self.branches, judged.scores, judged.limits, strict=True):
+            if branch.subject == "motion":
+                clean = sample.time - troubled > branch.memory_s
+                tested |= clean & score.valid.any()
+                wrong |= clean & (score.valid & (score.value > limit)).any()
+                spoiled |= ~clean
+        age = sample.time - state.moved
+        stands = (age >= 0) & (age <= self.hold_s.max()) & ~spoiled
+        old = jnp.where(stands, state.motion, jnp.int8(UNKNOWN))
+        new = jnp.where(wrong, jnp.int8(FAULT), jnp.int8(OK))
+        return jnp.where(tested, new, old), jnp.where(tested, sample.time, state.moved)
