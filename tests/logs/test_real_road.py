@@ -116,3 +116,61 @@ def test_guesses_parse_and_logs_survive_writing(real_data: Path, tmp_path: Path,
     np.testing.assert_allclose(copy.value, log.value, rtol=1e-12)
     np.testing.assert_array_equal(copy.fresh, log.fresh)
     assert (copy.channels, copy.sensors, copy.name, copy.epoch_s) == (log.channels, log.sensors, log.name, log.epoch_s)
+
+
+def test_comma2k19(real_data: Path) -> None:
+    folder = real_data / "road" / "comma2k19_rav4"
+
+    def array(name: str) -> np.ndarray:
+        stored: np.ndarray = np.load(folder / f"{name}.npy", allow_pickle=False)
+        return stored
+
+    log = read(folder)
+    ticks = array("IMU__gyro__t")
+    assert log.duration_s == pytest.approx(59.992, abs=1e-3)
+    np.testing.assert_allclose(log.time, ticks - ticks[0], atol=1e-9)
+    rates = {sensor.name: 1 / sensor.period_s for sensor in log.sensors}
+    usual = {"accelerometer": 104.4, "gyro": 104.4, "speed": 89.2, "steering": 89.1, "wheels": 89.2, "velocity": 20.0}
+    usual |= {"live_gnss_ublox": 9.99, "live_gnss_qcom": 0.50, "magnetometer": 10.0}
+    assert {name: rates[name] for name in usual} == pytest.approx(usual, rel=0.005)
+    for path, name, column, factor in (
+        ("gyro.z", "IMU__gyro", 2, 1.0),
+        ("accelerometer.x", "IMU__accelerometer", 0, 1.0),
+        ("steering.angle", "CAN__steering_angle", None, np.pi / 180),
+        ("wheels.rear_left", "CAN__wheel_speed", 2, 1.0),
+        ("live_gnss_ublox.latitude", "GNSS__live_gnss_ublox", 0, np.pi / 180),
+        ("live_gnss_ublox.altitude", "GNSS__live_gnss_ublox", 4, 1.0),
+        ("live_gnss_ublox.course", "GNSS__live_gnss_ublox", 5, np.pi / 180),
+        ("magnetometer.y", "IMU__magnetometer", 1, 1e-6),
+    ):
+        time, value = array(f"{name}__t"), array(f"{name}__value")
+        value = value if column is None else value[:, column]
+        # the last measurement that had come by each tick
+        latest = np.searchsorted(time, ticks + 1e-6, side="right") - 1
+        fresh = np.flatnonzero(log.fresh[:, log.index(path)])
+        got = log.value[fresh, log.index(path)]
+        np.testing.assert_allclose(got, value[latest[fresh]] * factor, rtol=1e-12, err_msg=path)
+        assert (latest[fresh[-1]], got[-1]) == (latest[-1], pytest.approx(value[latest[-1]] * factor))
+    pose = np.searchsorted(ticks, array("global_pose__frame_times") - 1e-6)
+    np.testing.assert_array_equal(np.flatnonzero(log.fresh[:, log.index("velocity.x")]), pose)
+    np.testing.assert_array_equal(
+        log.value[pose, log.index("velocity.x")], array("global_pose__frame_velocities")[:, 0]
+    )
+    ends = log.value[[pose[0], pose[-1]]][:, log.of("quaternion")]
+    np.testing.assert_allclose(ends[:, 0], [0.212439, 0.221213], atol=1e-6)
+
+
+def test_comma2k19_axes_and_signs(real_data: Path) -> None:
+    """x forward, y right, z down; the steering angle is positive to the left, the gyro's yaw rate to the right."""
+    log = read(real_data / "road" / "comma2k19_rav4")
+    assert np.nanmean(log.value[:, log.index("accelerometer.z")]) == pytest.approx(-9.66, abs=0.01)
+    second = np.arange(1, 59)
+    speed, yaw, angle, ahead = (
+        np.array([np.nanmean(log.value[(log.time >= s) & (log.time < s + 1), log.index(path)]) for s in second])
+        for path in ("speed.speed", "gyro.z", "steering.angle", "accelerometer.x")
+    )
+    assert np.corrcoef(np.gradient(speed), ahead)[0, 1] > 0.8
+    assert np.corrcoef(speed * angle, yaw)[0, 1] < -0.9
+    # yaw rate = speed × steering angle / (ratio × wheelbase): 27 at these speeds, with the understeer of the car in it
+    slope = np.polyfit(speed * angle / 2.66, -yaw, 1)[0]
+    assert 1 / slope == pytest.approx(28, abs=2)

@@ -13,7 +13,8 @@ def cli() -> None:
     """Notice when a vehicle's sensor lies, name it and the kind of fault.
 
     Start with `sensorfault demo`, or with a log of your own: `sensorfault init LOG`, then `sensorfault detect LOG`.
-    LOG is a CSV, Parquet or RTKLIB .pos file, or a folder of such files of one drive.
+    LOG is a CSV, Parquet or RTKLIB .pos file, NumPy arrays (NAME__t.npy beside NAME__value.npy), or a folder of such
+    files of one drive.
     """
 
 

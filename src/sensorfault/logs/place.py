@@ -5,6 +5,7 @@ from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.readers.formats import READERS
+from sensorfault.logs.readers.npy import called_by
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -23,7 +24,8 @@ def files_of(path: Where) -> list[Path]:
         if not files:
             raise LogError("no file was named; name a file, a folder or several files of one drive.")
     elif Path(path).is_dir():
-        files = sorted(file for file in Path(path).iterdir() if file.is_file() and file.suffix.lower() in READERS)
+        files = [file for file in Path(path).iterdir() if file.is_file() and file.suffix.lower() in READERS]
+        files = sorted({called_by(file) if file.suffix.lower() == ".npy" else file for file in files})
         if not files:
             raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(READERS)} there.")
     else:

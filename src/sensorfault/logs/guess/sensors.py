@@ -97,13 +97,13 @@ def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray
             return units.acceleration_unit(group)
         case "gyro":
             return units.rate_unit(group)
-        case "attitude" | "heading":
+        case "attitude" | "heading" | "steering":
             return units.angle_unit(value)
         case "position":
             return units.position_unit(value)
         case "height":
             return units.height_unit(value)
-        case "speed":
+        case "speed" | "wheels":
             return units.speed_unit(value, clock.time, place_rad)
     unit = _USUAL_UNIT.get(kind, "")
     return unit, f"the usual unit of a {kind}" if unit else ""

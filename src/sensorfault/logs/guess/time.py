@@ -24,7 +24,8 @@ def guess_time(source: Source) -> tuple[str, str, str]:
         LogError: no column rises like a time.
     """
     if source.time is not None:
-        return source.time, source.unit or "s", f"{source.path.suffix} files say their time"
+        why = f"{source.path.suffix} files say their time"
+        return source.time, source.unit or _unix_unit(source.frame[source.time]) or "s", why
     ranked = []
     for i, name in enumerate(source.frame.columns):
         column = source.frame[name]
@@ -77,15 +78,20 @@ def _unit(name: str, column: pl.Series) -> str:
     bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", name)
     if bracket and bracket[1].strip() in _NAMED_UNITS:
         return _NAMED_UNITS[bracket[1].strip()]
-    for unit in _SPAN:
-        if _is_unix(column, unit):
-            return unit
+    unix = _unix_unit(column)
+    if unix is not None:
+        return unix
     for unit, pattern in _UNIT_WORDS:
         if re.search(pattern, name.lower()):
             return unit
     reading = column.cast(pl.Float64).drop_nulls().to_numpy()
     step = float(np.median(np.diff(reading))) if len(reading) > 1 else 1.0
     return min(_SPAN, key=lambda unit: abs(np.log(max(step, 1e-12) * _SPAN[unit] / _USUAL_STEP_S)))
+
+
+def _unix_unit(column: pl.Series) -> str | None:
+    """The unit in which a column is Unix time."""
+    return next((unit for unit in _SPAN if _is_unix(column, unit)), None)
 
 
 def _is_unix(column: pl.Series, unit: str) -> bool:

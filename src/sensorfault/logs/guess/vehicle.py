@@ -1,5 +1,6 @@
 """Describe an unknown log: which columns are which sensor, in what unit, held or new. Every guess gives its reason."""
 
+import math
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,10 +12,12 @@ from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.place import Where, files_of
 from sensorfault.logs.readers.formats import read_source
+from sensorfault.logs.readers.npy import name_of
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
 _ROWS = 500_000  # a guess looks at so many rows from the beginning
+_RAW = "_uncalibrated"
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,8 @@ def guess(path: Where) -> VehicleFile:
             f"{path}: none of its {len(files)} files is a log; the first: {notes[0].removeprefix('Left out: ')}"
         )
     _refuse_several_drives(guesses)
+    guesses, raw = _calibrated(guesses)
+    guesses.sort(key=_octave)
     names = ["log"] if len(guesses) == 1 else _short_names([one.path for one in guesses])
     taken = [sensor.name for one in guesses for sensor in one.sensors]
     sensors = [
@@ -53,8 +58,8 @@ def guess(path: Where) -> VehicleFile:
         for sensor in one.sensors
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
-    name = Path(files[0] if len(files) == 1 else files[0].parent).stem
-    return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *_untied(guesses), *_missed(guesses)))
+    name = _stem(files[0]) if len(files) == 1 else files[0].parent.stem
+    return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
 
 
 def _guess_file(path: Path) -> _Guess:
@@ -89,6 +94,19 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
                 )
 
 
+def _calibrated(guesses: list[_Guess]) -> tuple[list[_Guess], list[str]]:
+    """The files without those that hold another's raw readings: one device must not vouch for itself."""
+    known = {_stem(one.path) for one in guesses}
+    raw = [one for one in guesses if _stem(one.path).removesuffix(_RAW) in known - {_stem(one.path)}]
+    notes = [f"{one.path.name}: left out, the readings of another file's sensor before calibration." for one in raw]
+    return [one for one in guesses if one not in raw], notes
+
+
+def _octave(one: _Guess) -> int:
+    """Fast files first: where several say the same, the first is the best. Rates within an octave are alike."""
+    return round(math.log2(one.clock.period_s))
+
+
 def _missed(guesses: list[_Guess]) -> list[str]:
     """A sentence for each file with columns left out that a person might look for."""
     said = []
@@ -110,12 +128,17 @@ def _untied(guesses: list[_Guess]) -> list[str]:
 
 
 def _joined(file: str, sensor: str) -> str:
-    return file if file.endswith(sensor) else f"{file}_{sensor}"
+    return file if file.endswith(sensor) or f"_{sensor}_" in f"_{file}_" else f"{file}_{sensor}"
+
+
+def _stem(path: Path) -> str:
+    """A file's name; of arrays, what they measure."""
+    return name_of(path).split("__")[-1] if path.suffix.lower() == ".npy" else path.stem
 
 
 def _short_names(paths: list[Path]) -> list[str]:
     """File names without what they share and without numbers, where they stay apart."""
-    stems = [path.stem for path in paths]
+    stems = [_stem(path) for path in paths]
     apart = (i for i, letters in enumerate(zip(*stems, strict=False)) if len(set(letters)) > 1)
     start = stems[0].rfind("_", 0, next(apart, 0)) + 1
     short = [re.sub(r"\W+", "_", re.sub(r"(_\d+)+$", "", stem[start:])).strip("_").lower() for stem in stems]

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sensorfault.logs.readers.csv import read_csv
+from sensorfault.logs.readers.npy import read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
 from sensorfault.logs.readers.source import Source
@@ -16,6 +17,7 @@ READERS: dict[str, Callable[[Path], Source]] = {
     ".dat": read_csv,
     ".parquet": read_parquet,
     ".pos": read_pos,
+    ".npy": read_npy,
 }
 
 
