@@ -13,8 +13,10 @@ import numpy as np
 from laws.case import Case
 from laws.guests.zoo import zoo
 from sensorfault.methods.catalog import METHODS
-from sensorfault.methods.reconstructed import READMIT_S
 from sensorfault.monitor.monitor import Monitor
+from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
 from sensorfault.simulation.road import drive
 from sensorfault.training.session import Session
@@ -32,21 +34,46 @@ def recipes() -> list[Case]:
     for name, recipe in METHODS.items():
         monitor = recipe.build(log.between(end_s=240.0), 0, Session()).monitor
         permuted = functools.partial(_permuted, monitor)
-        made.append(Case(name, monitor, rows, lie, READMIT_S, permuted=permuted))
+        made.append(Case(name, monitor, rows, lie, float(monitor.recovery.readmit_s), permuted=permuted))
     return made
 
 
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
-    """The monitor of a reconstruction for its channels in another order."""
+    """The monitor of a joint test and one of repeats, for its channels in another order."""
+    residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
+        monitor.residual, order
+    )
 
     def parts(m: Monitor) -> list:
-        r, (joint, each) = m.residual, m.branches
-        vectors = [r.offset, r.center, r.half, r.watched, joint.statistic.scale, each.threshold.limit, m.hold_s]
-        return [r.weights, r.output, r.cov, *vectors]
+        joint, each = m.branches
+        scale = [joint.statistic.scale] if isinstance(joint.statistic, Exchange) else []
+        return [*scale, each.threshold.limit, m.hold_s]
 
-    weights, output, cov, *vectors = parts(monitor)
-    moved = [weights[:, order], output[order], cov[order][:, order], *(vector[order] for vector in vectors)]
-    return replace(eqx.tree_at(parts, monitor, moved), owner=tuple(monitor.owner[i] for i in order))
+    moved = eqx.tree_at(parts, monitor, [vector[order] for vector in parts(monitor)])
+    return replace(moved, residual=residual, owner=tuple(monitor.owner[i] for i in order))
+
+
+def _reconstruction(residual: Reconstruction, order: np.ndarray) -> Reconstruction:
+    vectors = ("offset", "center", "half", "watched")
+    return replace(
+        residual,
+        weights=residual.weights[:, order],
+        output=residual.output[order],
+        cov=residual.cov[order][:, order],
+        **{name: getattr(residual, name)[order] for name in vectors},
+    )
+
+
+def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
+    channels = len(order)
+    lagged = np.concatenate([order + lag * channels for lag in range(residual.lags)])
+    vectors = ("center", "drift", "most", "watched")
+    return replace(
+        residual,
+        weights=residual.weights[order][:, lagged],
+        cov=residual.cov[order][:, order],
+        **{name: getattr(residual, name)[order] for name in vectors},
+    )
 
 
 @functools.cache

@@ -1,10 +1,10 @@
 """Name -> recipe."""
 
 from sensorfault.logs.table import LogError
-from sensorfault.methods import elm_autoencoder, elm_cross_validated, pca
+from sensorfault.methods import elm_autoencoder, elm_cross_validated, linear_conditioning, pca
 from sensorfault.methods.recipe import Recipe
 
-_RECIPES = elm_autoencoder.RECIPE, elm_cross_validated.RECIPE, pca.RECIPE
+_RECIPES = elm_autoencoder.RECIPE, elm_cross_validated.RECIPE, pca.RECIPE, linear_conditioning.RECIPE
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = elm_cross_validated.RECIPE.name
 

@@ -7,9 +7,13 @@ from sensorfault.monitor.decision.persist import Persist
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.statistic.exchange import Exchange
+from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
@@ -18,8 +22,8 @@ PARTS: dict[str, type[eqx.Module]] = {
     part.__name__: part
     for part in (
         *(Monitor, Branch),
-        Reconstruction,
-        *(Norm, Exchange, Repeats),
+        *(Reconstruction, Conditioning, Several),
+        *(Norm, Mahalanobis, Exchange, Repeats, Of),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),
         *(Drop, Rebuild),

@@ -1,0 +1,64 @@
+"""Linear conditioning: what the newest row owes to the ones before it, from their joint covariance."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.monitor.residual.conditioning import Conditioning
+
+LAGS = 4
+BOUND = 3.0  # conditional sigmas; of 2, 3, 4 the one at which neither real drive loses
+RIDGE = 1e-8  # of a channel's variance: for channels that follow from each other
+
+
+def unbroken(time: Float[np.ndarray, " T"], complete: Bool[np.ndarray, " T"], lags: int) -> Bool[np.ndarray, " T"]:
+    """Rows that are complete, as are the `lags` before them, with no hole in the clock between."""
+    step = np.diff(time)
+    joined = np.concatenate([[False], step < 1.5 * np.median(step)]) & complete
+    joined[1:] &= complete[:-1]
+    whole = complete.copy()
+    for lag in range(lags):
+        whole[: lag + 1] = False
+        whole[lag + 1 :] &= joined[1 : len(joined) - lag]
+    return whole
+
+
+def fit_conditioning(
+    time: Float[np.ndarray, " T"],
+    value: Float[np.ndarray, "T C"],
+    complete: Bool[np.ndarray, " T"],
+    watched: Bool[np.ndarray, " C"],
+    lags: int = LAGS,
+    bound: float = BOUND,
+) -> Conditioning:
+    """From healthy rows [SI] on one clock; `complete`: those that hold every watched channel."""
+    channels = len(watched)
+    tick_s = float(np.median(np.diff(time)))
+    rows = value[complete]
+    center = np.where(watched, rows.mean(axis=0), 0.0)
+    sigma = np.where(watched, rows.std(axis=0), 1.0)
+    x = np.where(watched & complete[:, None], (value - center) / sigma, 0.0)
+    at = np.flatnonzero(unbroken(time, complete, lags))
+    # joint covariance of [x_t, x_t-1 .. x_t-W]
+    joint = np.concatenate([x[at - lag] for lag in range(lags + 1)], axis=1)
+    s = joint.T @ joint / len(at) + RIDGE * np.eye(joint.shape[1])
+    now, past = slice(channels), slice(channels, None)
+    # A = S_xy S_yy^-1,  S_x|y = S_xx - S_xy S_yy^-1 S_yx
+    a = np.linalg.solve(s[past, past], s[past, now]).T
+    cov = s[now, now] - a @ s[past, now]
+    second = max(round(1 / tick_s), 1)
+    changed = x[second:] - x[:-second] if len(x) > second else x
+    drift = (changed**2).mean(axis=0) / (second * tick_s)
+    return Conditioning(
+        weights=jnp.asarray(a * sigma[:, None] / np.tile(sigma, lags)),
+        center=jnp.asarray(center),
+        cov=jnp.asarray(np.where(np.eye(channels, dtype=bool) & ~watched, 1.0, cov * np.outer(sigma, sigma))),
+        drift=jnp.asarray(drift * sigma**2),
+        most=jnp.asarray(np.where(watched, 2 * sigma**2, 0.0)),
+        tick_s=jnp.asarray(tick_s),
+        bound=jnp.asarray(bound),
+        watched=jnp.asarray(watched),
+        lags=lags,
+    )
