@@ -15,14 +15,14 @@ class _Since(NamedTuple):
 
 
 class Rebuild(eqx.Module):
-    """Stand-in = expected value, up to `horizon_s` after the last trusted measurement.
+    """Stand-in = expected value, up to `horizon_s` after the last trusted measurement; one for all or one a channel.
 
     A channel is taken at its own word again `readmit_s` after the last accusation: a score that dips below its limit
     for a moment does not make a fault healthy.
     """
 
-    horizon_s: Float[Array, ""]
-    readmit_s: Float[Array, ""]
+    horizon_s: Float[Array, "*C"]
+    readmit_s: Float[Array, "*C"]
     channels: int = eqx.field(static=True)
 
     def init(self) -> _Since:
