@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.monitor.residual.reconstruction import Reconstruction
-from sensorfault.numerics.networks import ACTIVATIONS
+from sensorfault.numerics.networks.activations import ACTIVATIONS
 from sensorfault.training.scaling import Scaling
 
 BLOCKS = 5

@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.numerics.networks import ACTIVATIONS
+from sensorfault.numerics.networks.activations import ACTIVATIONS
 from sensorfault.types import Residual, Sample, Trust
 
 
