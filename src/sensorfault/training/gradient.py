@@ -102,7 +102,10 @@ def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
             f"{len(order)} windows of {windows.length} rows are too few to learn from, {len(before)} besides "
             f"{len(after)} to stop by, where {LEAST} of each are needed; give a longer log."
         )
-    return tuple(windows._replace(first=windows.first[rows], target=windows.target[rows]) for rows in (before, after))
+    learn, judge = (
+        windows._replace(first=windows.first[rows], target=windows.target[rows]) for rows in (before, after)
+    )
+    return learn, judge
 
 
 class _Now(NamedTuple, Generic[Net]):
@@ -119,10 +122,11 @@ _ADAM = optax.scale_by_adam()
 
 def _loss(net: Callable[..., Any], x: Float32[Array, "s C B"], y: Float32[Array, "D B"]) -> Float32[Array, " B"]:
     # (12) L = mean (y - y~)²
-    return ((net(x) - y) ** 2).mean(axis=0)
+    square: Float32[Array, " B"] = ((net(x) - y) ** 2).mean(axis=0)
+    return square
 
 
-@partial(jax.jit, static_argnums=3, donate_argnums=())
+@partial(jax.jit, static_argnums=3)
 def _epoch(
     now: _Now[Net], examples: OnDevice, batches: Int32[Array, "K B"], length: int
 ) -> tuple[_Now[Net], Float32[Array, ""]]:
@@ -152,4 +156,5 @@ def _error(net: Callable[..., Any], unseen: OnDevice, length: int) -> Float32[Ar
         return (_loss(net, *unseen.batch(part[0], length)) * part[1]).sum()
 
     sums = lax.map(judge, (chosen.reshape(chunks, -1), weight.reshape(chunks, -1)))
-    return sums.sum() / count
+    mean: Float32[Array, ""] = sums.sum() / count
+    return mean
