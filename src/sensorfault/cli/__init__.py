@@ -4,7 +4,7 @@ import sys
 
 import click
 
-from sensorfault.cli import demo, detect, evaluate, fit, init, inject, methods, report
+from sensorfault.cli import demo, detect, evaluate, fit, init, inject, methods, report, reproduce
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -18,7 +18,7 @@ def cli() -> None:
     """
 
 
-for verb in (demo, init, fit, detect, inject, evaluate, report, methods):
+for verb in (demo, init, fit, detect, inject, evaluate, report, methods, reproduce):
     cli.add_command(verb.command)
 
 

@@ -33,21 +33,39 @@ def progress() -> Iterator["Progress"]:
         yield bar
 
 
-def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], answer: bool = True) -> None:
-    """A table on stdout; on stderr when JSON has stdout (`answer` False)."""
+def table(
+    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], answer: bool = True, right: Sequence[str] = ()
+) -> None:
+    """A table on stdout; on stderr when JSON has stdout (`answer` False). `right`: more columns of numbers."""
     from rich import box
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    drawn = Table(
+        title=Text(title, "table.title") if title else None,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        show_edge=False,
+        pad_edge=False,
+    )
     for name in columns:
-        drawn.add_column(name, justify="right" if name.endswith(("]", "%")) or name in _NUMBERS else "left")
+        drawn.add_column(
+            Text(name), justify="right" if name.endswith(("]", "%")) or name in (*_NUMBERS, *right) else "left"
+        )
     for row in rows:
         drawn.add_row(*(Text(cell) for cell in row))
     stream = sys.stdout if answer else sys.stderr
     width = None if stream.isatty() else 200
     Console(file=stream, width=width, highlight=False).print(drawn)
+
+
+def heading(text: str, answer: bool = True) -> None:
+    """A line above a table, where the table goes; not broken where the table is narrow."""
+    from rich.console import Console
+    from rich.text import Text
+
+    Console(file=sys.stdout if answer else sys.stderr, soft_wrap=True).print(Text(f"\n{text}", "bold"))
 
 
 _NUMBERS = {"peak", "limit", "n", "recall", "chance", "magnitude"}
@@ -101,21 +119,12 @@ def fault_words(fault: "Fault") -> str:
     return f"{fault.kind}{size} on {where}"
 
 
-def plain(value: Any) -> Any:
-    """JSON has no NaN and no infinity: they become null."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {key: plain(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(inner) for inner in value]
-    return value
-
-
 def write_json(path: str | None, answer: Mapping[str, Any]) -> None:
     """Write JSON to a file (whole or not at all) or to stdout (`-`); nothing without a path."""
     if path is None:
         return
+    from sensorfault.evaluation.plain import plain
+
     text = json.dumps(plain(answer), indent=1, allow_nan=False) + "\n"
     if path == "-":
         sys.stdout.write(text)

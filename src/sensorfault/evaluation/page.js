@@ -1,25 +1,6 @@
-"use strict";
-const source = document.getElementById("figures").textContent;
-const narrow = matchMedia("(max-width: 700px)");
-const touch = matchMedia("(pointer: coarse)");
-const dark = matchMedia("(prefers-color-scheme: dark)");
 const drawn = new Map(); // id -> figure
 let whole = null;
 let shown = null; // from, to [s]
-
-function floats({ f4, from }) {
-  const bytes = Uint8Array.from(atob(f4), (c) => c.charCodeAt(0));
-  return Float64Array.from(new Float32Array(bytes.buffer), (value) => value + from);
-}
-
-function read() {
-  const style = getComputedStyle(document.documentElement);
-  return JSON.parse(source, (key, value) => {
-    if (typeof value?.f4 === "string") return floats(value);
-    if (key.endsWith("color") && String(value).startsWith("--")) return style.getPropertyValue(value).trim();
-    return value;
-  });
-}
 
 // How many of the rising numbers x lie below a limit.
 function rank(x, limit) {
@@ -97,17 +78,12 @@ function show(from, to) {
   for (const [id, figure] of drawn) paint(id, figure);
 }
 
-function dress(figure) {
-  const style = getComputedStyle(document.documentElement);
-  const color = (name) => style.getPropertyValue(name).trim();
-  const { layout } = figure;
-  Object.assign(layout, {
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", showlegend: false, dragmode: touch.matches ? false : "zoom",
-    margin: { l: narrow.matches ? 54 : 78, r: 10, t: 4, b: 34 }, hovermode: layout.hovermode ?? "x unified", hoversubplots: "axis",
-    font: { family: style.getPropertyValue("font-family") || "sans-serif", size: 11, color: color("--muted") },
-    hoverlabel: { bgcolor: color("--back"), bordercolor: color("--rule"), font: { color: color("--text"), size: 12 } },
+function place(figure) {
+  dress(figure);
+  Object.assign(figure.layout, {
+    showlegend: false, hovermode: figure.layout.hovermode ?? "x unified", hoversubplots: "axis",
+    margin: { l: narrow.matches ? 54 : 78, r: 10, t: 4, b: 34 },
   });
-  for (const note of layout.annotations ?? []) note.font = { color: color("--text"), size: 12 };
   return figure;
 }
 
@@ -125,7 +101,7 @@ async function draw() {
     shown ??= whole;
     say();
     const fresh = !drawn.has(id);
-    drawn.set(id, dress(figure));
+    drawn.set(id, place(figure));
     await paint(id, figure);
     if (fresh) listen(document.getElementById(id));
     await new Promise((done) => setTimeout(done));

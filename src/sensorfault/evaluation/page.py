@@ -69,7 +69,7 @@ def page(detection: Detection, truth: Sequence[Fault], title: str | None, summar
         scores=SCORE_LEGEND + _place("scores") if "scores" in charts else "",
         figures=json.dumps(charts, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
         plotly=get_plotlyjs(),
-        script=here.joinpath("page.js").read_text("utf-8"),
+        script="".join(here.joinpath(name).read_text("utf-8") for name in ("page_base.js", "page.js")),
     )
 
 

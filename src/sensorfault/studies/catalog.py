@@ -1,0 +1,37 @@
+"""The studies: a name, the paper, and what runs it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from sensorfault.studies.findings import Effort, Findings
+from sensorfault.studies.min2021.study import study as min2021
+
+
+@dataclass(frozen=True)
+class Study:
+    """`experiments`: the title of each, by what its rows call it."""
+
+    name: str
+    title: str
+    paper: str
+    run: Callable[[Effort], Findings]
+    experiments: Mapping[str, str]
+
+
+STUDIES: dict[str, Study] = {
+    study.name: study
+    for study in (
+        Study(
+            "min2021",
+            "Shorts, jams and abnormal motion of a car",
+            "Min et al. 2021",
+            min2021,
+            {
+                "A1": "Shorts of gyro and accelerometer",
+                "A2": "Jams of the position",
+                "A3": "Abnormal motion: is the residual normal?",
+                "A4": "Bias and miss",
+            },
+        ),
+    )
+}
