@@ -31,7 +31,12 @@ class Case:
     learned: Callable[[MonitorState], Any] = limits_learned  # references, thresholds, weights
     permuted: Callable[[np.ndarray], Monitor] | None = None  # the same monitor, for channels in this order
     quiet: Sample | None = None  # healthy logs with a leading axis, to count false alarms on
+    named: tuple[int, ...] | None = None  # channels that a fault is laid on; all by default
     rate: float | None = None  # ... and the rate of them that each channel was designed for
+
+    @property
+    def accused(self) -> tuple[int, ...]:
+        return tuple(range(self.channels)) if self.named is None else self.named
 
     @property
     def channels(self) -> int:

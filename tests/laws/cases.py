@@ -12,15 +12,19 @@ import numpy as np
 
 from laws.case import Case
 from laws.guests.zoo import zoo
+from sensorfault.methods import ar_predictor, lstm_predictor, mlp_predictor
 from sensorfault.methods.catalog import METHODS
+from sensorfault.methods.predicted import READMIT_S, REBUILD_S
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
 from sensorfault.simulation.road import drive
+from sensorfault.training.gradient import Plan
 from sensorfault.training.session import Session
 
+POSITION = ["gnss.latitude", "gnss.longitude"]
 IMU = [f"{sensor}.{axis}" for sensor in ("gyro", "accelerometer") for axis in "xyz"]
 
 
@@ -32,10 +36,37 @@ def recipes() -> list[Case]:
     lie = 40 * log.value.std(axis=0)
     made = []
     for name, recipe in METHODS.items():
+        if name in PREDICTORS:
+            continue
         monitor = recipe.build(log.between(end_s=240.0), 0, Session()).monitor
         permuted = functools.partial(_permuted, monitor)
         made.append(Case(name, monitor, rows, lie, float(monitor.recovery.readmit_s), permuted=permuted))
     return made
+
+
+PLAN = Plan(epochs=3, batch=256)
+PREDICTORS = {
+    "lstm-predictor": functools.partial(lstm_predictor.build, size=lstm_predictor.Size(10, (4, 4), PLAN)),
+    "mlp-predictor": functools.partial(mlp_predictor.build, size=mlp_predictor.Size(10, (8,), PLAN)),
+    "ar-predictor": functools.partial(ar_predictor.build, length=10),
+    "persistence": METHODS["persistence"].build,
+    "linear-extrapolation": METHODS["linear-extrapolation"].build,
+}
+
+
+def predictors() -> list[Case]:
+    """Each predictor of the position, small and hardly trained, on a part of its own drive, since a network knows no
+    place that it has never seen.
+    """
+    log = drive(120.0, seed=3).log.select([*IMU, *POSITION])
+    part = log.between(80.0, 93.0)
+    rows = samples(part.time, part.value, part.fresh)
+    lie = np.where(np.arange(8) >= 6, 40 * log.value.std(axis=0), 0.0)
+    back_s = REBUILD_S + READMIT_S + 1.0
+    return [
+        Case(name, build(log, 0, Session()).monitor, rows, lie, back_s, named=(6, 7))
+        for name, build in PREDICTORS.items()
+    ]
 
 
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
@@ -78,4 +109,4 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 @functools.cache
 def cases() -> tuple[Case, ...]:
-    return (*zoo(), *recipes())
+    return (*zoo(), *recipes(), *predictors())

@@ -54,8 +54,8 @@ def test_healthy_is_ok_and_a_lie_is_named(case: Case) -> None:
     k = telling(case)
     second = healthy(case).channel[half(case.rows) :]
     assert (second == FAULT).mean() < 2 * (case.rate or 0.005)
-    assert (second == OK).any(axis=0).all()
-    for c in range(case.channels):
+    assert (second == OK).any(axis=0)[list(case.accused)].all()
+    for c in case.accused:
         told = walk(case.monitor, lied(case.rows, slice(k, k + 1), alone(case, c)))
         assert told.channel[k, c] == FAULT
         assert told.sensor[k, case.monitor.owner[c]] == FAULT
@@ -115,7 +115,7 @@ def test_stream_equals_replay(case: Case) -> None:
 def test_two_lies_leave_the_same_filter_limits_and_weights(case: Case) -> None:
     """Whatever was said, it was not believed: nothing but the evidence may know how big the lie was."""
     k = telling(case)
-    for c in range(case.channels):
+    for c in case.accused:
         small, big = (walk(case.monitor, lied(case.rows, slice(k, k + 1), n * alone(case, c))) for n in (1, 2))
         assert_same(small.reports.trust.measured[k], big.reports.trust.measured[k])
         for told in (small, big):
@@ -270,7 +270,7 @@ def assert_back(case: Case, told: Walk, end: int, rows: Sample | None = None) ->
     back = time > time[end] + case.back_s
     assert back.sum() >= 20, "the log ends too early to tell"
     assert (told.channel[back] == healthy(case).channel[back]).mean() > 0.99
-    assert (told.channel[back] == OK).any(axis=0).all()
+    assert (told.channel[back] == OK).any(axis=0)[list(case.accused)].all()
 
 
 @every_case
@@ -290,7 +290,7 @@ def test_back_after_a_gap_in_the_clock(case: Case) -> None:
 @every_case
 def test_back_after_a_long_fault(case: Case) -> None:
     start = telling(case)
-    for c in range(case.channels):
+    for c in case.accused:
         told = walk(case.monitor, lied(case.rows, slice(start, start + 75), alone(case, c)))
         assert told.channel[start, c] == FAULT
         assert_back(case, told, start + 75)

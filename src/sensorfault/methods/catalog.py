@@ -1,10 +1,30 @@
 """Name -> recipe."""
 
 from sensorfault.logs.table import LogError
-from sensorfault.methods import elm_autoencoder, elm_cross_validated, linear_conditioning, pca
+from sensorfault.methods import (
+    ar_predictor,
+    elm_autoencoder,
+    elm_cross_validated,
+    linear_conditioning,
+    linear_extrapolation,
+    lstm_predictor,
+    mlp_predictor,
+    pca,
+    persistence,
+)
 from sensorfault.methods.recipe import Recipe
 
-_RECIPES = elm_autoencoder.RECIPE, elm_cross_validated.RECIPE, pca.RECIPE, linear_conditioning.RECIPE
+_RECIPES = (
+    elm_autoencoder.RECIPE,
+    elm_cross_validated.RECIPE,
+    pca.RECIPE,
+    linear_conditioning.RECIPE,
+    lstm_predictor.RECIPE,
+    mlp_predictor.RECIPE,
+    ar_predictor.RECIPE,
+    persistence.RECIPE,
+    linear_extrapolation.RECIPE,
+)
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = elm_cross_validated.RECIPE.name
 

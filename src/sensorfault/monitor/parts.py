@@ -8,6 +8,8 @@ from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.monitor.residual.extrapolation import Extrapolation
+from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.statistic.exchange import Exchange
@@ -17,12 +19,16 @@ from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
+from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
+from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
 
 PARTS: dict[str, type[eqx.Module]] = {
     part.__name__: part
     for part in (
         *(Monitor, Branch),
         *(Reconstruction, Conditioning, Several),
+        *(Prediction, Extrapolation),
+        *(Dense, Linear, Mlp, Lstm, LstmLayer),
         *(Norm, Mahalanobis, Exchange, Repeats, Of),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),

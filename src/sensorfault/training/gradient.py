@@ -45,7 +45,8 @@ class Plan:
     slower: float = 0.3
 
 
-class Trained(NamedTuple, Generic[Net]):
+@dataclass(frozen=True)
+class Trained(Generic[Net]):
     """The network of the epoch with the lowest validation error (mean square, (12)), and all errors by epoch."""
 
     net: Net
@@ -108,12 +109,12 @@ def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
     return learn, judge
 
 
-class _Now(NamedTuple, Generic[Net]):
+class _Now(NamedTuple):
     """Where a training stands."""
 
-    net: Net
+    net: Any
     optimiser: Any
-    best: Net
+    best: Any
     rate: Float32[Array, ""]
 
 
@@ -127,12 +128,10 @@ def _loss(net: Callable[..., Any], x: Float32[Array, "s C B"], y: Float32[Array,
 
 
 @partial(jax.jit, static_argnums=3)
-def _epoch(
-    now: _Now[Net], examples: OnDevice, batches: Int32[Array, "K B"], length: int
-) -> tuple[_Now[Net], Float32[Array, ""]]:
+def _epoch(now: _Now, examples: OnDevice, batches: Int32[Array, "K B"], length: int) -> tuple[_Now, Float32[Array, ""]]:
     """One pass over the batches: the training after it, and the mean error met on the way."""
 
-    def step(carry: tuple[Net, Any], chosen: Int32[Array, " B"]) -> tuple[tuple[Net, Any], Float32[Array, ""]]:
+    def step(carry: tuple[Any, Any], chosen: Int32[Array, " B"]) -> tuple[tuple[Any, Any], Float32[Array, ""]]:
         net, state = carry
         x, y = examples.batch(chosen, length)
         error, slope = jax.value_and_grad(lambda net: _loss(net, x, y).mean())(net)

@@ -1,0 +1,23 @@
+"""What every predictor has to beat: the position will be what it was."""
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.predicted import from_last
+from sensorfault.methods.recipe import Recipe
+from sensorfault.model import Model
+from sensorfault.training.session import Session
+
+NAME = "persistence"
+
+
+def build(log: Log, seed: int, session: Session) -> Model:
+    """Fit on a healthy log; there is no chance in it."""
+    return from_last(NAME, log, order=0)
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Position taken to stay, scaled largest training error",
+    source="the baseline of Min et al. 2021, section 2.2",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=build,
+)
