@@ -245,5 +245,5 @@ def test_an_experiments_progress_is_a_part_of_the_studys() -> None:
     tell = min2021._part(lambda doing, share: told.append((doing, share)), "A3", 2, 4)
     tell("fitting", 0.0)
     tell("fitting", 0.5)
-    tell("fitting", 7.0)
-    assert told == [("A3: fitting", 0.5), ("A3: fitting", 0.625), ("A3: fitting", 0.75)]
+    tell("A3 judging", 7.0)
+    assert told == [("A3 fitting", 0.5), ("A3 fitting", 0.625), ("A3 judging", 0.75)]

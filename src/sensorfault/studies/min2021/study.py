@@ -31,4 +31,9 @@ def study(effort: Effort) -> Findings:
 
 def _part(tell: Callable[[str, float], None], code: str, i: int, count: int) -> Callable[[str, float], None]:
     """An experiment's own progress as a part of the study's."""
-    return lambda doing, share: tell(f"{code}: {doing}", (i + min(max(share, 0.0), 1.0)) / count)
+
+    def part(doing: str, share: float) -> None:
+        said = doing if doing.startswith(code) else f"{code} {doing}"
+        tell(said, (i + min(max(share, 0.0), 1.0)) / count)
+
+    return part
