@@ -58,6 +58,7 @@ def test_findings_add_up_in_order() -> None:
         (0.00163, 0.0002, Cell("0.0016", "±0.0002")),
         (883.4, None, Cell("883")),
         (0.0, None, Cell("0.00")),
+        (0.0623, None, Cell("0.06")),
         (-23.456, 1.0, Cell("-23.5", "±1.0")),
         (math.nan, math.nan, Cell("–")),
         (math.inf, None, Cell("–")),

@@ -12,7 +12,7 @@ SOURCES = {"real": "real logs", "injected": "real logs with injected faults", "s
 PAPER = "paper"
 NONE = "–"
 _WIDE = 10  # more magnitudes than so many go down instead of across
-_SCALE = {"short": "σ", "jam": "s"}
+_SCALE = {"short": "σ", "jam": "s", "miss": "s"}
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -119,13 +119,11 @@ def printed(row: Row) -> Cell:
 
 
 def _digits(value: float) -> int:
-    """Digits behind the point: three that count, at least two below ten, none from a hundred on."""
+    """Digits behind the point: none from a hundred on, one from ten on, else two; of less than 0.01 two that count."""
     size = abs(value)
-    if size >= 100:
-        return 0
     if size >= 10:
-        return 1
-    return 2 if size >= 0.1 or size == 0 else min(6, 1 - math.floor(math.log10(size)))
+        return 0 if size >= 100 else 1
+    return 2 if size >= 0.01 or size == 0 else min(6, 1 - math.floor(math.log10(size)))
 
 
 def written(number: float | None) -> str:
