@@ -15,7 +15,7 @@ from sensorfault.methods.fit import fit
 from sensorfault.methods.watch import watchable
 from sensorfault.model import Model
 
-ON_THE_RIG = ("elm-autoencoder", "elm-cross-validated", "pca", "linear-conditioning")
+ON_THE_RIG = ("elm-autoencoder", "elm-cross-validated", "elm-robust", "pca", "linear-conditioning")
 OF_THE_POSITION = ("lstm-predictor", "mlp-predictor", "ar-predictor", "persistence", "linear-extrapolation")
 
 
@@ -134,7 +134,7 @@ def test_too_few_rows() -> None:
 
 
 def test_an_unknown_method() -> None:
-    assert "elm-autoencoder, elm-cross-validated, pca" in sentence(log(), method="lstm")
+    assert "elm-autoencoder, elm-cross-validated, elm-robust, pca" in sentence(log(), method="lstm")
 
 
 @pytest.mark.parametrize("share", [-0.1, 0.95, 1.0, 5.0, float("nan")])

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from sensorfault.logs import Log
     from sensorfault.model import Model
 
+SUSPECTS_SAID = 10
+
 
 def check_outputs(outputs: Sequence[Path | str | None], inputs: Sequence[Path | None]) -> None:
     """Before the work: every output has a folder to go to, is none itself, and is nobody's input.
@@ -97,9 +99,10 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
         "A fault in that beginning is learned, not found, and the false-alarm rate is not known: "
         "fit on a drive you trust with 'sensorfault fit' to know both.",
     )
-    for sentence in (*told, *not_watched(model)):
+    told = (*told, *suspects(model), *not_watched(model))
+    for sentence in told:
         show.say(sentence)
-    return Ready(model, log.between(cut), (start, cut), (*told, *not_watched(model)))
+    return Ready(model, log.between(cut), (start, cut), told)
 
 
 def rate(model: "Model") -> tuple[str, ...]:
@@ -111,6 +114,19 @@ def rate(model: "Model") -> tuple[str, ...]:
         f"False alarms: {told['held_out_alarms']} in the {told['held_out_s']:.0f} s held out from the fit, "
         f"{told['alarms_per_hour']:.3g} an hour; with 95 % confidence below {told['alarms_per_hour_below']:.3g}.",
     )
+
+
+def suspects(model: "Model") -> tuple[str, ...]:
+    """What of the training data was left out of the fit because it looked faulty."""
+    found: list[dict[str, Any]] = model.summary.get("training_suspects", [])
+    if not found:
+        return ()
+    said = "; ".join(
+        f"{one['reason']} on {one['channel']}, {show.clock(one['start_s'])} to {show.clock(one['end_s'])}"
+        for one in found[:SUSPECTS_SAID]
+    )
+    more = f" and {len(found) - SUSPECTS_SAID} more" if len(found) > SUSPECTS_SAID else ""
+    return (f"Left out of the fit, since the training data look faulty there: {said}{more}.",)
 
 
 def not_watched(model: "Model") -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from sensorfault.methods import (
     ar_predictor,
     elm_autoencoder,
     elm_cross_validated,
+    elm_robust,
     linear_conditioning,
     linear_extrapolation,
     lstm_predictor,
@@ -17,6 +18,7 @@ from sensorfault.methods.recipe import Recipe
 _RECIPES = (
     elm_autoencoder.RECIPE,
     elm_cross_validated.RECIPE,
+    elm_robust.RECIPE,
     pca.RECIPE,
     linear_conditioning.RECIPE,
     lstm_predictor.RECIPE,

@@ -10,6 +10,7 @@ from sensorfault.methods.catalog import DEFAULT, recipe
 from sensorfault.model import Model
 from sensorfault.numerics.poisson import rate_below
 from sensorfault.training.session import Session
+from sensorfault.training.suspects import leave_out
 
 HELD_OUT = 0.3
 
@@ -26,8 +27,11 @@ def fit(
 
     The last `held_out` share of the log (0 to 0.9) is kept from the fit and judged afterwards: `model.summary` then has
     `held_out_s`, `held_out_alarms`, `alarms_per_hour` and, with 95 % confidence, `alarms_per_hour_below`. With 0 all is
-    used and nothing is known of the rate. `progress` is told what is being done. `checkpoint`: a file that a training
-    by epochs writes after each, and goes on from if it is there.
+    used and nothing is known of the rate. What plainly looks faulty in the part to fit on is left out and named in
+    `training_suspects`, a list of start_s, end_s, channel and reason.
+
+    `progress` is told what is being done. `checkpoint`: a file that a training by epochs writes after each, and goes on
+    from if it is there.
 
     Raises:
         LogError: an unknown method, a log that it cannot be fitted on, or a checkpoint of another fit.
@@ -42,8 +46,9 @@ def fit(
     unseen = log.between(cut)
     if held_out and len(unseen) < 2:
         raise LogError(f"held_out is {held_out:g}, which keeps no two rows of {log.name} to judge; give more, or 0.")
-    model = recipe(method).build(log.between(end_s=cut) if held_out else log, seed, session)
-    summary = model.summary | {"seed": seed}
+    training, suspects = leave_out(log.between(end_s=cut) if held_out else log)
+    model = recipe(method).build(training, seed, session)
+    summary = model.summary | {"seed": seed, "training_suspects": [suspect.as_dict() for suspect in suspects]}
     if held_out:
         session.tell("judging the part held out")
         alarms = len(detect(model, unseen).events)

@@ -8,17 +8,19 @@ from sensorfault.methods.joint import Training, deaf, limited
 from sensorfault.model import Model
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.training.cross_validation import Fit, largest_unseen_norm
+from sensorfault.training.extremes import explained, explained_max
 from sensorfault.training.scaling import Scaling
 from sensorfault.training.tapes import score_tape
 
 READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
 
 
-def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False) -> Model:
+def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False, robust: bool = False) -> Model:
     """Fit on a healthy log: weights, then the limits from a replay with the limits off.
 
     The largest healthy error is that of the training data, as published; with `cross_validated` that of blocks left out
-    of the fit, if it is larger.
+    of the fit, if it is larger. With `robust` a few contaminated rows ruin neither scaling nor weights nor limit: what
+    lies farther out than the rest explains is not learned from and has no say in what is largest.
 
     Raises:
         LogError: too few complete rows, or nothing to watch.
@@ -26,12 +28,15 @@ def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False) 
     training = Training.of(name, log)
     watched = training.watched
     value = np.where(watched, log.value, 0.0)[training.rows]
+    if robust:
+        value = value[explained(value).all(axis=1)]
     scaling = Scaling.of(value, watched)
     residual = fit(value, scaling)
     monitor = deaf(log, residual, Exchange(jnp.asarray(scaling.half)), READMIT_S)
     norm, runs = score_tape(monitor, log)
     # (10) max(err), over the training data
-    largest = float(np.nanmax(norm))
+    tested = norm[np.isfinite(norm)]
+    largest = explained_max(tested) if robust else float(tested.max())
     if cross_validated:
         largest = max(largest, largest_unseen_norm(value, watched, fit, scaling.half))
     return limited(name, training, monitor, residual.cov, "norm", largest, runs)
