@@ -1,0 +1,55 @@
+"""The extreme learning machine's network, all of its weights trained: what backpropagation makes of the same rows."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.numerics.networks.dense import Dense, Mlp
+from sensorfault.training.gradient import Plan, Trained, train
+from sensorfault.training.scaling import Scaling
+from sensorfault.training.session import Session
+from sensorfault.training.windows import Windows
+
+# The batch and rate that, of those in benchmarks/bench_fit.py, are first as good as the ELM, and best in the end.
+PLAN = Plan(epochs=20_000, batch=32, rate=0.003, patience=100)
+
+
+def untrained(channels: int, hidden: int, seed: int) -> Mlp:
+    """Hidden weights and biases uniform in (-1, 1), those of the ELM of the same seed; small output weights."""
+    random = np.random.default_rng(seed)
+    w, b = random.uniform(-1, 1, (hidden, channels)), random.uniform(-1, 1, hidden)
+    beta = random.normal(0, hidden**-0.5, (channels, hidden))
+    output = Dense(jnp.asarray(beta), jnp.zeros(channels))
+    return Mlp((Dense(jnp.asarray(w), jnp.asarray(b)),), output, "sigmoid")
+
+
+def train_copy(x: Float[np.ndarray, "N C"], hidden: int, plan: Plan, seed: int, session: Session) -> Trained[Mlp]:
+    """The network that copies scaled rows, by gradient."""
+    rows = Windows(x, np.arange(len(x)), x, 1)
+    return train(untrained(x.shape[1], hidden, seed), rows, plan, seed, session)
+
+
+def fit_backprop(
+    value: Float[np.ndarray, "N C"],
+    scaling: Scaling,
+    session: Session,
+    hidden: int = 32,
+    plan: Plan = PLAN,
+    seed: int = 0,
+) -> Reconstruction:
+    """Autoencoder on healthy rows (SI, finite) by backpropagation: the comparator of Min et al. 2021, section 3.1.
+
+    Raises:
+        LogError: too few rows, or a checkpoint of another training.
+    """
+    x = scaling.to_unit(value)
+    network = train_copy(x, hidden, plan, seed, session).net
+    (layer,), output = network.hidden, network.output
+    w, b = np.asarray(layer.weights) * scaling.watched, np.asarray(layer.bias)
+    beta, offset = np.asarray(output.weights) * scaling.watched[:, None], np.asarray(output.bias) * scaling.watched
+    # (3), (4) x~ = beta f(W x + b) + offset
+    copy = 1 / (1 + np.exp(-(x @ w.T + b))) @ beta.T + offset
+    return scaling.reconstruction(w, b, beta, offset, "sigmoid", x - copy)
