@@ -1,12 +1,16 @@
 """How the inertial unit sits in the car and how late the receiver is, from a healthy drive alone."""
 
+import sensorfault._jax  # isort: skip  # noqa: F401
+
 from dataclasses import dataclass
 
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.vehicles.car import Roles
+from sensorfault.vehicles.inertial import Inertial
 
 WINDOW_S = 1.0  # changes of course and speed are compared over so long [s]
 LEAST_SPEED = 3.0  # a slower car's course is not used [m/s]
@@ -43,6 +47,21 @@ class Mounting:
     def yaw(self) -> Float[np.ndarray, "3"]:
         """course rate = yaw . (gyro - gyro_bias)."""
         return self.yaw_sign * self.up
+
+
+def inertial(mounting: Mounting, found: Roles) -> Inertial:
+    """The part that reads such a unit; a receiver that seems to be early is taken as not late."""
+    assert found.gyro is not None
+    assert found.accelerometer is not None
+    return Inertial(
+        yaw=jnp.asarray(mounting.yaw),
+        push=jnp.asarray(mounting.thrust * mounting.forward),
+        gyro_bias=jnp.asarray(mounting.gyro_bias),
+        force_bias=jnp.asarray(mounting.accelerometer_bias),
+        lag_s=jnp.asarray(np.maximum([mounting.course_lag_s, mounting.speed_lag_s], 0.0)),
+        gyro=found.gyro,
+        accelerometer=found.accelerometer,
+    )
 
 
 def fit_mounting(log: Log, found: Roles) -> Mounting:

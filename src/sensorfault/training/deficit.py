@@ -1,0 +1,105 @@
+"""What the deficits of position and velocity are on a healthy drive."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+from itertools import combinations
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.logs.table import Log
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.drop import Drop
+from sensorfault.monitor.residual.motion_deficit import MotionDeficit
+from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
+from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.run import replay, samples
+
+TIMES = (1.0, 2.0, 4.0, 8.0)  # ages of references over which a law is learned, in horizons
+SLOTS = 32  # of the trail while learning
+FINEST_M = 0.1  # no receiver is believed to be better
+FINEST_M_S = 0.03
+
+
+def fit_deficit(part: MotionDeficit, log: Log) -> MotionDeficit:
+    """With the laws of a healthy drive: variance of the deficit [m^2] = law . (1, swing^2, path^2, age^2).
+
+    That of each horizon is learned on references up to eight times as old; none grows more slowly with age than that
+    of the longest.
+    """
+    laws = np.stack([_law(part, log, float(horizon) * np.array(TIMES)) for horizon in np.asarray(part.horizon_s)])
+    laws[:, 3] = np.maximum(laws[:, 3], laws[-1, 3])
+    fitted: MotionDeficit = eqx.tree_at(lambda p: p.law, part, jnp.asarray(laws))
+    return fitted
+
+
+def fit_velocity(part: VelocityDeficit, log: Log) -> VelocityDeficit:
+    """With the mean square of the slip on a healthy drive."""
+    told = _extras(part, log)
+    slip = told.slip[told.ready]
+    variance = (slip**2).mean(axis=0) if len(slip) else np.ones(2)
+    fitted: VelocityDeficit = eqx.tree_at(lambda p: p.variance, part, jnp.asarray(np.maximum(variance, FINEST_M_S**2)))
+    return fitted
+
+
+def _extras(residual: Any, log: Log) -> Any:
+    """`extra` of a residual generator's every sample on a healthy log, all of it trusted."""
+    channels = len(log.channels)
+    silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
+    monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
+    rows = samples(log.time, log.value, log.fresh)
+    _, told = jax.jit(lambda m, s, r: replay(m, s, r, lambda report: report.residual.extra))(
+        monitor, monitor.init(), rows
+    )
+    return jax.tree.map(np.asarray, told)
+
+
+def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[np.ndarray, "4"]:
+    wide = MotionDeficit(
+        law=jnp.ones((len(ages), 4)),
+        horizon_s=jnp.asarray(ages),
+        spacing_s=jnp.asarray(ages[-1] / (SLOTS - 2)),
+        afresh_s=jnp.asarray(2 * ages[-1]),
+        inertial=part.inertial,
+        position=part.position,
+        velocity=part.velocity,
+        polar=part.polar,
+        channels=part.channels,
+        slots=SLOTS,
+    )
+    told = _extras(wide, log)
+    ready = told.ready
+    if not ready.any():
+        return np.array([FINEST_M**2, 0.0, 0.0, 0.0])
+    square = (told.deficit[ready] ** 2).sum(axis=1)
+    terms = np.stack([np.ones_like(square), told.swing[ready] ** 2, told.path[ready] ** 2, told.age[ready] ** 2], 1)
+    # a square scatters in proportion to its own expectation; what is far below the usual is no finer a measure
+    usual = max(square[told.age[ready] < 2 * ages[0]].mean(), FINEST_M**2)
+    weight = np.ones(len(square))
+    law = np.zeros(4)
+    for _ in range(10):
+        law = not_negative(terms / weight[:, None], square / weight)
+        weight = terms @ law + usual
+    return np.maximum(law, [FINEST_M**2, 0.0, 0.0, 0.0])
+
+
+def not_negative(a: Float[np.ndarray, "N n"], b: Float[np.ndarray, " N"]) -> Float[np.ndarray, " n"]:
+    """Least squares with no negative coefficient, for a handful of them: the best of all subsets that has none."""
+    n = a.shape[1]
+    gram, right = a.T @ a, a.T @ b
+    best, found = 0.0, np.zeros(n)
+    for size in range(1, n + 1):
+        for chosen in combinations(range(n), size):
+            k = list(chosen)
+            x = np.linalg.lstsq(gram[np.ix_(k, k)], right[k], rcond=None)[0]
+            cost = x @ gram[np.ix_(k, k)] @ x - 2 * x @ right[k]
+            if (x >= 0).all() and cost < best:
+                best, found = cost, np.zeros(n)
+                found[k] = x
+    return found

@@ -1,0 +1,44 @@
+"""What an inertial unit in a car says of its motion: how fast it turns and how hard it is pushed."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.types import Sample
+
+
+class Inertial(eqx.Module):
+    """Rates of course and speed out of a gyro and an accelerometer, fitted by training/mounting.py.
+
+    `yaw`: course rate = yaw . (gyro - gyro_bias), clockwise; `push`: speed rate = push . (force - force_bias).
+    `lag_s`: how late the receiver's course and speed are (first-order lags) [s]. `gyro`, `accelerometer`: columns.
+    """
+
+    yaw: Float[Array, "3"]
+    push: Float[Array, "3"]
+    gyro_bias: Float[Array, "3"]  # [rad/s]
+    force_bias: Float[Array, "3"]  # [m/s^2]
+    lag_s: Float[Array, "2"]
+    gyro: tuple[int, int, int] = eqx.field(static=True)
+    accelerometer: tuple[int, int, int] = eqx.field(static=True)
+
+    def rates(self, sample: Sample) -> tuple[Float[Array, "2"], Bool[Array, ""]]:
+        """Course rate [rad/s] and speed rate [m/s^2], and whether they are known; zeros where not."""
+        turn = sum(a * (sample.value[i] - b) for a, b, i in zip(self.yaw, self.gyro_bias, self.gyro, strict=True))
+        force = zip(self.push, self.force_bias, self.accelerometer, strict=True)
+        go = sum(a * (sample.value[i] - b) for a, b, i in force)
+        there = jnp.stack([sample.present[i] for i in (*self.gyro, *self.accelerometer)]).all()
+        return jnp.where(there, jnp.stack([turn, go]), 0.0), there
+
+    def decay(self, dt: Float[Array, ""]) -> Float[Array, "2"]:
+        """What is left of a first-order lag after dt [s]; nothing where there is no lag."""
+        return jnp.where(self.lag_s > 0, jnp.exp(-dt / jnp.where(self.lag_s > 0, self.lag_s, 1.0)), 0.0)
+
+
+def turned(velocity: Float[Array, "2"], by: Float[Array, ""], faster: Float[Array, ""]) -> Float[Array, "2"]:
+    """A velocity (east, north) turned clockwise [rad] and made faster along itself [m/s]; never backwards."""
+    east, north = velocity
+    cos, sin = jnp.cos(by), jnp.sin(by)
+    speed = jnp.linalg.norm(velocity)
+    factor = jnp.maximum(speed + faster, 0.0) / jnp.maximum(speed, 0.1)
+    return jnp.stack([east * cos + north * sin, north * cos - east * sin]) * factor
