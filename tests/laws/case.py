@@ -1,7 +1,7 @@
 """One monitor, and what the laws must know of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -32,6 +32,7 @@ class Case:
     permuted: Callable[[np.ndarray], Monitor] | None = None  # the same monitor, for channels in this order
     quiet: Sample | None = None  # healthy logs with a leading axis, to count false alarms on
     named: tuple[int, ...] | None = None  # channels that a fault is laid on; all by default
+    lost: dict[int, tuple[int, ...]] = field(default_factory=dict)  # who cannot be judged while a channel is silent
     rate: float | None = None  # ... and the rate of them that each channel was designed for
 
     @property

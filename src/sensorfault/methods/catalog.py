@@ -3,6 +3,7 @@
 from sensorfault.logs.table import LogError
 from sensorfault.methods import (
     ar_predictor,
+    bp_autoencoder,
     elm_autoencoder,
     elm_cross_validated,
     elm_robust,
@@ -10,6 +11,7 @@ from sensorfault.methods import (
     linear_extrapolation,
     lstm_predictor,
     mlp_predictor,
+    motion_deficit,
     pca,
     persistence,
 )
@@ -19,6 +21,7 @@ _RECIPES = (
     elm_autoencoder.RECIPE,
     elm_cross_validated.RECIPE,
     elm_robust.RECIPE,
+    bp_autoencoder.RECIPE,
     pca.RECIPE,
     linear_conditioning.RECIPE,
     lstm_predictor.RECIPE,
@@ -26,6 +29,7 @@ _RECIPES = (
     ar_predictor.RECIPE,
     persistence.RECIPE,
     linear_extrapolation.RECIPE,
+    motion_deficit.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = elm_cross_validated.RECIPE.name

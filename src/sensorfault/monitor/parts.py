@@ -9,18 +9,25 @@ from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.extrapolation import Extrapolation
+from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.residual.several import Several
+from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
+from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.statistic.repeats import Repeats
+from sensorfault.monitor.statistic.shortfall import Shortfall
+from sensorfault.monitor.statistic.slippage import Slippage
+from sensorfault.monitor.statistic.standing import Standing
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
+from sensorfault.vehicles.inertial import Inertial
 
 PARTS: dict[str, type[eqx.Module]] = {
     part.__name__: part
@@ -28,8 +35,10 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Monitor, Branch),
         *(Reconstruction, Conditioning, Several),
         *(Prediction, Extrapolation),
+        *(MotionDeficit, VelocityDeficit, Inertial),
         *(Dense, Linear, Mlp, Lstm, LstmLayer),
         *(Norm, Mahalanobis, Exchange, Repeats, Of),
+        *(Deficit, Shortfall, Standing, Slippage),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),
         *(Drop, Rebuild),
