@@ -21,7 +21,6 @@ from sensorfault.training.backprop import train_copy
 from sensorfault.training.elm import fit_elm
 from sensorfault.training.gradient import Plan
 from sensorfault.training.scaling import Scaling
-from sensorfault.training.session import Session
 
 HIDDEN, C = 32, 1e3
 SEEDS = range(5)
@@ -76,10 +75,10 @@ def run_adam(rows: Rows, setting: Setting, seed: int, target: float) -> Trained:
     """`target`: the ELM's validation error."""
     plan = Plan(epochs=MOST, batch=setting.batch, rate=setting.rate, patience=PATIENCE)
     start = perf_counter()
-    train_copy(rows.train, HIDDEN, replace(plan, epochs=1), seed, Session())
+    train_copy(rows.train, HIDDEN, replace(plan, epochs=1), seed)
     compile_s = perf_counter() - start
     start = perf_counter()
-    done = train_copy(rows.train, HIDDEN, plan, seed, Session())
+    done = train_copy(rows.train, HIDDEN, plan, seed)
     fit_s = perf_counter() - start
 
     errors = np.sqrt(done.validated)

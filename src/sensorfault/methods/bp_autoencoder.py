@@ -13,9 +13,7 @@ NAME = "bp-autoencoder"
 
 def build(log: Log, seed: int, session: Session, plan: Plan = PLAN) -> Model:
     """Fit on a healthy log."""
-    return reconstructed(
-        NAME, log, lambda rows, scaling: fit_backprop(rows, scaling, session, hidden=32, plan=plan, seed=seed)
-    )
+    return reconstructed(NAME, log, lambda rows, scaling: fit_backprop(rows, scaling, 32, plan, seed, session))
 
 
 RECIPE = Recipe(

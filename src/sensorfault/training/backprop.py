@@ -10,7 +10,7 @@ from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.numerics.networks.dense import Dense, Mlp
 from sensorfault.training.gradient import Plan, Trained, train
 from sensorfault.training.scaling import Scaling
-from sensorfault.training.session import Session
+from sensorfault.training.session import SILENT, Session
 from sensorfault.training.windows import Windows
 
 # The batch and rate that, of those in benchmarks/bench_fit.py, are first as good as the ELM, and best in the end.
@@ -35,10 +35,10 @@ def train_copy(x: Float[np.ndarray, "N C"], hidden: int, plan: Plan, seed: int, 
 def fit_backprop(
     value: Float[np.ndarray, "N C"],
     scaling: Scaling,
-    session: Session,
     hidden: int = 32,
     plan: Plan = PLAN,
     seed: int = 0,
+    session: Session = SILENT,
 ) -> Reconstruction:
     """Autoencoder on healthy rows (SI, finite) by backpropagation: the comparator of Min et al. 2021, section 3.1.
 

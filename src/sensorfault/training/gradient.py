@@ -20,7 +20,7 @@ from jaxtyping import Array, Float32, Int32
 
 from sensorfault.logs.table import LogError
 from sensorfault.training.checkpoint import Checkpoint
-from sensorfault.training.session import Session
+from sensorfault.training.session import SILENT, Session
 from sensorfault.training.windows import OnDevice, Windows
 
 LEAST = 20  # windows on each side of the split
@@ -55,7 +55,7 @@ class Trained(Generic[Net]):
     validated: tuple[float, ...]
 
 
-def train(net: Net, windows: Windows, plan: Plan, seed: int, session: Session) -> Trained[Net]:
+def train(net: Net, windows: Windows, plan: Plan, seed: int, session: Session = SILENT) -> Trained[Net]:
     """Minimise the mean square error of `net` on the windows. Min et al. 2021, equation (12).
 
     Raises:

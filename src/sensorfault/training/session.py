@@ -17,3 +17,6 @@ class Session:
 
     tell: Callable[[str], None] = _silent
     checkpoint: Path | None = None
+
+
+SILENT = Session()
