@@ -33,7 +33,7 @@ def default() -> Model:
 
 
 def test_the_catalog() -> None:
-    assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION}
+    assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, "bp-autoencoder", "motion-deficit"}
     assert DEFAULT == "elm-cross-validated"
     for name, recipe in METHODS.items():
         assert recipe.name == name
