@@ -2,6 +2,8 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
+from collections.abc import Callable
+
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
@@ -9,12 +11,15 @@ from jaxtyping import Float
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.numerics.networks.dense import Dense, Mlp
 from sensorfault.training.gradient import Plan, Trained, train
+from sensorfault.training.initial import new_mlp
 from sensorfault.training.scaling import Scaling
 from sensorfault.training.session import SILENT, Session
 from sensorfault.training.windows import Windows
 
 # The batch and rate that, of those in benchmarks/bench_fit.py, are first as good as the ELM, and best in the end.
 PLAN = Plan(epochs=20_000, batch=32, rate=0.003, patience=100)
+
+Start = Callable[[int, int, int], Mlp]
 
 
 def untrained(channels: int, hidden: int, seed: int) -> Mlp:
@@ -26,10 +31,17 @@ def untrained(channels: int, hidden: int, seed: int) -> Mlp:
     return Mlp((Dense(jnp.asarray(w), jnp.asarray(b)),), output, "sigmoid")
 
 
-def train_copy(x: Float[np.ndarray, "N C"], hidden: int, plan: Plan, seed: int, session: Session) -> Trained[Mlp]:
+def usual(channels: int, hidden: int, seed: int) -> Mlp:
+    """As networks for backpropagation usually start: small weights, after Glorot & Bengio 2010."""
+    return new_mlp(seed, channels, channels, (hidden,), "sigmoid")
+
+
+def train_copy(
+    x: Float[np.ndarray, "N C"], hidden: int, plan: Plan, seed: int, session: Session, start: Start = untrained
+) -> Trained[Mlp]:
     """The network that copies scaled rows, by gradient."""
     rows = Windows(x, np.arange(len(x)), x, 1)
-    return train(untrained(x.shape[1], hidden, seed), rows, plan, seed, session)
+    return train(start(x.shape[1], hidden, seed), rows, plan, seed, session)
 
 
 def fit_backprop(
@@ -39,14 +51,17 @@ def fit_backprop(
     plan: Plan = PLAN,
     seed: int = 0,
     session: Session = SILENT,
+    start: Start = untrained,
 ) -> Reconstruction:
     """Autoencoder on healthy rows (SI, finite) by backpropagation: the comparator of Min et al. 2021, section 3.1.
+
+    `start(channels, hidden, seed)`: the network before training.
 
     Raises:
         LogError: too few rows, or a checkpoint of another training.
     """
     x = scaling.to_unit(value)
-    network = train_copy(x, hidden, plan, seed, session).net
+    network = train_copy(x, hidden, plan, seed, session, start).net
     (layer,), output = network.hidden, network.output
     w, b = np.asarray(layer.weights) * scaling.watched, np.asarray(layer.bias)
     beta, offset = np.asarray(output.weights) * scaling.watched[:, None], np.asarray(output.bias) * scaling.watched
