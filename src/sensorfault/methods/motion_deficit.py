@@ -38,12 +38,13 @@ HALF = 2.0  # ... and more than half of the way is missing
 FLOOR_M = 0.5  # less way missing is no jam worth an alarm
 AFRESH_S = 30.0  # a longer fault is forgotten: no lock-out
 MEMORY_S = 4.0  # of the inertial unit's own velocity
+LED_S = 8.0  # without a trusted velocity for longer it knows no better than the receiver
 REBUILD_S = 10.0  # a stand-in is believed for so long
 READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
 PER_HOUR = 1.0  # false alarms that the limits are extrapolated to, for all tests together
 MARGIN = 1.25  # on every limit, for what a drive of minutes has not shown
 LEAST_MOVING_S = 20.0
-SLOTS = 8
+SLOTS = 15  # a reference every 0.08 s: at 10 Hz every fix is one, and none is older than it need be
 
 Test = tuple[tuple[str, ...], Any, float]  # names of the tests, statistic, floor of their limits
 
@@ -162,7 +163,7 @@ def _parts(
         return parts, [place], tests
     against = VelocityDeficit(
         memory_s=jnp.asarray(MEMORY_S),
-        afresh_s=jnp.asarray(AFRESH_S),
+        afresh_s=jnp.asarray(LED_S),
         variance=jnp.ones(2),
         inertial=unit,
         velocity=found.velocity,

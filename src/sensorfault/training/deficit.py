@@ -13,13 +13,14 @@ from jaxtyping import Float
 
 from sensorfault.logs.table import Log
 from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.monitor import Branch, Monitor, MonitorState
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.run import replay, samples
+from sensorfault.types import Sample
 
 TIMES = (1.0, 2.0, 4.0, 8.0)  # ages of references over which a law is learned, in horizons
 SLOTS = 32  # of the trail while learning
@@ -54,10 +55,12 @@ def _extras(residual: Any, log: Log) -> Any:
     silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
     monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
     rows = samples(log.time, log.value, log.fresh)
-    _, told = jax.jit(lambda m, s, r: replay(m, s, r, lambda report: report.residual.extra))(
-        monitor, monitor.init(), rows
-    )
-    return jax.tree.map(np.asarray, told)
+    return jax.tree.map(np.asarray, _told(monitor, monitor.init(), rows))
+
+
+@jax.jit
+def _told(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
+    return replay(monitor, state, rows, lambda report: report.residual.extra)[1]
 
 
 def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[np.ndarray, "4"]:
