@@ -7,6 +7,7 @@ from sensorfault.monitor.decision.persist import Persist
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
@@ -18,11 +19,14 @@ from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.statistic.normality import Normality
 from sensorfault.monitor.statistic.of import Of
+from sensorfault.monitor.statistic.relative import Relative
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.statistic.shortfall import Shortfall
 from sensorfault.monitor.statistic.slippage import Slippage
 from sensorfault.monitor.statistic.standing import Standing
+from sensorfault.monitor.statistic.whitened import Whitened
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
@@ -37,8 +41,9 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Prediction, Extrapolation),
         *(MotionDeficit, VelocityDeficit, Inertial),
         *(Dense, Linear, Mlp, Lstm, LstmLayer),
-        *(Norm, Mahalanobis, Exchange, Repeats, Of),
+        *(Norm, Mahalanobis, Exchange, Repeats, Of, Relative),
         *(Deficit, Shortfall, Standing, Slippage),
+        *(BicycleKalman, Columns, Whitened, Normality),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),
         *(Drop, Rebuild),

@@ -1,0 +1,42 @@
+"""Linear conditioning on roads of every kind: the newest row against the four before it and against the last second."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.conditioned import conditioned
+from sensorfault.methods.recipe import Recipe
+from sensorfault.model import Model
+from sensorfault.monitor.statistic.relative import Relative
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.training.limits import tail_limit
+from sensorfault.training.roughness import roughness
+from sensorfault.training.session import Session
+from sensorfault.training.tapes import deaf, score_tape
+
+PER_HOUR = 1.0
+MEMORY_S = 0.5  # a road is as rough as it was for so long
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    model = conditioned(RECIPE.name, log, cross_validated=False)
+    joint = model.monitor.branches[0]
+    memory = MEMORY_S / log.period_s
+    lowest, highest = roughness(score_tape(deaf(model.monitor), log)[0], memory)
+    relative = Relative(joint.statistic, jnp.asarray(memory), jnp.asarray(lowest), jnp.asarray(highest))
+    monitor = eqx.tree_at(lambda m: m.branches[0], model.monitor, replace(joint, statistic=relative))
+    limit = tail_limit(score_tape(deaf(monitor), log)[0], log.period_s, PER_HOUR)
+    monitor = eqx.tree_at(lambda m: m.branches[0].threshold, monitor, Fixed(jnp.asarray(limit)))
+    return replace(model, monitor=monitor, tests=(("mahalanobis, relative", None), *model.tests[1:]))
+
+
+RECIPE = Recipe(
+    name="relative-conditioning",
+    title="Newest row given the four before it, against the roughness of the last half second",
+    source="conditional mean of a Gaussian vector; the limit a tail of block maxima (Hosking & Wallis 1987)",
+    promise="one false alarm an hour, extrapolated from the training data",
+    build=_build,
+)
