@@ -103,10 +103,26 @@ def test_magnitudes_stand_across_and_methods_below_each_other() -> None:
 def test_what_was_measured_once_has_metrics_across() -> None:
     fit = replace(ONE, source="real", fault=None, magnitude=None, metric="fit_s", value=123.0)
     rate = replace(fit, metric="far", value=456.0, method="elm", paper=None)
-    sweeps, single = tables((*sweep(), fit, rate))
+    both = replace(rate, metric="fit_s", value=789.0)
+    sweeps, single = tables((*sweep(), fit, rate, both))
     assert sweeps.heads == ("1", "3", "10")
     assert (single.title, single.source, single.heads) == ("", "real logs", ("fit_s", PAPER, "far"))
-    assert [[number.value for number in cells] for _, cells in single.rows] == [["123", "0.90", ""], ["", "", "456"]]
+    numbers = [[number.value for number in cells] for _, cells in single.rows]
+    assert numbers == [["123", "0.90", ""], ["789", "", "456"]]
+
+
+def test_what_has_no_metric_in_common_stands_apart() -> None:
+    fit = replace(ONE, source="real", fault=None, magnitude=None, spread=None, paper=None, condition="", value=100.0)
+    rows = [
+        replace(fit, metric="fit_s"),
+        replace(fit, metric="auc", method="elm", value=101.0),
+        replace(fit, metric="far", method="bp", value=102.0),
+        replace(fit, metric="auc", method="bp", value=103.0),
+    ]
+    fits, scores = tables(rows)
+    assert (fits.heads, [labels for labels, _ in fits.rows]) == (("fit_s",), [("dresden", "pca")])
+    assert scores.heads == ("auc", "far")
+    assert [[number.value for number in cells] for _, cells in scores.rows] == [["101", ""], ["103", "102"]]
 
 
 def test_many_magnitudes_go_down() -> None:
@@ -248,3 +264,8 @@ def test_an_experiments_progress_is_a_part_of_the_studys() -> None:
     tell("fitting", 0.5)
     tell("A3 judging", 7.0)
     assert told == [("A3 fitting", 0.5), ("A3 fitting", 0.625), ("A3 judging", 0.75)]
+
+
+def test_figures_are_filed_under_their_experiment() -> None:
+    figures = tuple(Figure(name, name, "", {}) for name in ("roc", "a2-curve"))
+    assert [figure.name for figure in min2021._filed("A2", Findings((), figures)).figures] == ["a2-roc", "a2-curve"]

@@ -17,6 +17,7 @@ function place({ data, layout = {} }) {
     showlegend: data.length > 1,
     legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top", bgcolor: "rgba(0,0,0,0)", font: { size: 12, color: color("--text") } },
   });
+  for (const { line } of layout.shapes ?? []) if (line) line.color ??= color("--muted");
   layout.xaxis ??= {};
   layout.yaxis ??= {};
   for (const [name, axis] of Object.entries(layout)) {

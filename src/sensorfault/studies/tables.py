@@ -48,8 +48,7 @@ def tables(rows: Sequence[Row]) -> tuple[Table, ...]:
         if across:
             sweeps.append(_sweep(fault or "", source, across))
         rest = [row for row in group if row not in across]
-        if rest:
-            single.append(_single(fault, source, rest))
+        single += [_single(fault, source, part) for part in _apart(rest)]
     return (*sweeps, *single)
 
 
@@ -63,6 +62,18 @@ def _sweep(fault: str, source: str, rows: Sequence[Row]) -> Table:
     title = f"{fault} by magnitude{unit}".strip()
     heads = [written(size) for size in sizes]
     return _table(title, source, rows, "metric", lambda row: row.metric, lambda row: written(row.magnitude), heads)
+
+
+def _apart(rows: Sequence[Row]) -> list[list[Row]]:
+    """Rows in parts that have no metric in common, so that no table is mostly empty."""
+    parts: list[tuple[set[str], list[Row]]] = []
+    for _, line in grouped(rows, lambda row: (row.data, row.method, row.condition)):
+        metrics, together = {row.metric for row in line}, line
+        for part in [part for part in parts if part[0] & metrics]:
+            metrics, together = part[0] | metrics, part[1] + together
+            parts.remove(part)
+        parts.append((metrics, together))
+    return [part for _, part in parts]
 
 
 def _single(fault: str | None, source: str, rows: Sequence[Row]) -> Table:

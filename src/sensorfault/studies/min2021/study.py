@@ -25,8 +25,17 @@ def study(effort: Effort) -> Findings:
     findings = Findings(())
     for i, (code, name) in enumerate(found.items()):
         experiment: Callable[[Effort], Findings] = getattr(import_module(f"{here}.{name}"), name)
-        findings += experiment(replace(effort, tell=_part(effort.tell, code, i, len(found))))
+        findings += _filed(code, experiment(replace(effort, tell=_part(effort.tell, code, i, len(found)))))
     return findings
+
+
+def _filed(code: str, findings: Findings) -> Findings:
+    """The names of an experiment's figures begin with its code, which puts them below its tables."""
+    figures = (
+        figure if figure.name.startswith(code.lower()) else replace(figure, name=f"{code.lower()}-{figure.name}")
+        for figure in findings.figures
+    )
+    return replace(findings, figures=tuple(figures))
 
 
 def _part(tell: Callable[[str, float], None], code: str, i: int, count: int) -> Callable[[str, float], None]:
