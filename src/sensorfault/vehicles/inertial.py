@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.types import Sample
+from sensorfault.types import Sample, Trust
 
 
 class Inertial(eqx.Module):
@@ -29,6 +29,10 @@ class Inertial(eqx.Module):
         go = sum(a * (sample.value[i] - b) for a, b, i in force)
         there = jnp.stack([sample.present[i] for i in (*self.gyro, *self.accelerometer)]).all()
         return jnp.where(there, jnp.stack([turn, go]), 0.0), there
+
+    def trusted(self, trust: Trust, fresh: Bool[Array, " C"]) -> Bool[Array, ""]:
+        """Whether all that is new of the unit is taken at its word."""
+        return jnp.stack([trust.measured[i] | ~fresh[i] for i in (*self.gyro, *self.accelerometer)]).all()
 
     def decay(self, dt: Float[Array, ""]) -> Float[Array, "2"]:
         """What is left of a first-order lag after dt [s]; nothing where there is no lag."""

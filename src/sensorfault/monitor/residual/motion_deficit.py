@@ -57,6 +57,8 @@ class _Work(NamedTuple):
     longer: Float[Array, ""]  # [m]
     place: Float[Array, "2"]
     fix: Bool[Array, ""]
+    ahead: tuple[Float[Array, "2"], Float[Array, "2"]]  # with this sample's word of the inertial unit, and without
+    fresh: Bool[Array, " C"]
 
 
 class MotionDeficit(eqx.Module):
@@ -90,20 +92,21 @@ class MotionDeficit(eqx.Module):
         new = sample.fresh[first] & sample.fresh[second]
         told = ground_velocity(sample.value[first], sample.value[second], self.polar)
         dt = jnp.clip(sample.time - state.time, 0.0, HOLD_S)
-        ahead = self._ahead(state.ahead, sample, dt)
 
         silence = sample.time - state.heard
         lasting = (silence >= 0) & (silence <= HOLD_S)  # else the way since any place is lost
         since = jnp.clip(silence, 0.0, HOLD_S)
-        held, now = turned(state.told, ahead[0], ahead[1]), turned(told, ahead[0], ahead[1])
+        # by the lag's measure of the sample before, which has been judged
+        held, now = (turned(velocity, state.ahead[0], state.ahead[1]) for velocity in (state.told, told))
         step = (state.ground + held) / 2 * dt
         trail = state.trail.kept(lasting).carried(dt, step, jnp.linalg.norm(step))
         trail = trail.kept(trail.age[0] <= self.afresh_s)
         # what was summed up by the velocity before is mended by half of what has changed: the trapezoid
         mended = (now - held) / 2 * since
         longer = (jnp.linalg.norm(now) - jnp.linalg.norm(held)) / 2 * since
-        carried = state._replace(time=sample.time, ground=held, ahead=ahead, trail=trail)
-        work = _Work(carried, new, told, now, mended, longer, place, fix)
+        carried = state._replace(time=sample.time, ground=held, trail=trail)
+        ahead = self._ahead(state.ahead, sample, dt)
+        work = _Work(carried, new, told, now, mended, longer, place, fix, ahead, sample.fresh)
 
         here = _mended(work, new)
         length = jnp.where(lasting, jnp.maximum(jnp.linalg.norm(step) + jnp.where(new, longer, 0.0), 0.0), 0.0)
@@ -117,14 +120,20 @@ class MotionDeficit(eqx.Module):
         known = (silence >= 0) & (silence <= HOLD_S)
         trusted = jnp.stack([trust.measured[i] for i in self.position]).all() & work.fix & known
         trail = state.trail.put(trusted, work.place[0], work.place[1], state.ground, self.spacing_s)
-        return state._replace(trail=trail)
+        with_unit, without = work.ahead
+        if self.inertial is not None:
+            without = jnp.where(self.inertial.trusted(trust, work.fresh), with_unit, without)
+        return state._replace(trail=trail, ahead=without)
 
-    def _ahead(self, ahead: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]) -> Float[Array, "2"]:
+    def _ahead(
+        self, ahead: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]
+    ) -> tuple[Float[Array, "2"], Float[Array, "2"]]:
         """What a first-order lag keeps back: the integral of the rates, forgotten at the lag's own pace."""
         if self.inertial is None:
-            return ahead
+            return ahead, ahead
         rates, _ = self.inertial.rates(sample)
-        return (ahead + rates * dt) * self.inertial.decay(dt)
+        left = self.inertial.decay(dt)
+        return (ahead + rates * dt) * left, ahead * left
 
     def _deficits(
         self, here: _State, place: Float[Array, "2"], fix: Bool[Array, ""], held_s: Float[Array, ""]

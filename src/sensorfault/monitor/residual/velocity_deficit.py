@@ -35,6 +35,8 @@ class _Work(NamedTuple):
     state: _State  # carried on to now
     told: Float[Array, "2"]
     new: Bool[Array, ""]
+    rates: Float[Array, "2"]  # with this sample's word of the inertial unit
+    fresh: Bool[Array, " C"]
 
 
 class VelocityDeficit(eqx.Module):
@@ -64,7 +66,8 @@ class VelocityDeficit(eqx.Module):
         dt = jnp.clip(sample.time - state.time, 0.0, HOLD_S)
         rates, there = self.inertial.rates(sample)
         lagging = rates + (state.rates - rates) * self.inertial.decay(dt)
-        by_unit = turned(state.velocity, lagging[0] * dt, lagging[1] * dt)
+        # by the rates of the sample before, which have been judged
+        by_unit = turned(state.velocity, state.rates[0] * dt, state.rates[1] * dt)
         broken = ~there | (sample.time - state.heard > HOLD_S) | (sample.time < state.time)
         slow = jnp.where(broken, sample.time, state.slow)
 
@@ -74,7 +77,8 @@ class VelocityDeficit(eqx.Module):
         slip = jnp.stack([off[0] * east + off[1] * north, off[0] * north - off[1] * east])
         ready = new & ~broken & (sample.time - slow >= self.memory_s / 4) & (speed >= SLOWEST)
         heard = jnp.where(new, sample.time, state.heard)
-        work = _Work(_State(sample.time, heard, state.believed, slow, lagging, by_unit), told, new)
+        carried = _State(sample.time, heard, state.believed, slow, state.rates, by_unit)
+        work = _Work(carried, told, new, lagging, sample.fresh)
         return self._residual(sample, by_unit, Slip(jnp.where(ready, slip, 0.0), ready)), work
 
     def update(self, work: _Work, trust: Trust) -> _State:
@@ -85,10 +89,12 @@ class VelocityDeficit(eqx.Module):
         led = lost | (believed & (jnp.linalg.norm(told) < SLOWEST))
         # v <- v + (1 - exp(-dt / T)) (told - v)
         gain = jnp.where(led, 1.0, jnp.where(believed, 1 - jnp.exp(-jnp.clip(since, 0.0, HOLD_S) / self.memory_s), 0.0))
+        unit = self.inertial.trusted(trust, work.fresh)
         return state._replace(
+            rates=jnp.where(unit, work.rates, state.rates),
             velocity=state.velocity + gain * (told - state.velocity),
             believed=jnp.where(believed | lost, state.time, state.believed),
-            slow=jnp.where(led, state.time, state.slow),
+            slow=jnp.where(led | ~unit, state.time, state.slow),
         )
 
     def _residual(self, sample: Sample, by_unit: Float[Array, "2"], slip: Slip) -> Residual:
