@@ -37,7 +37,7 @@ def recipes() -> list[Case]:
     lie = 40 * log.value.std(axis=0)
     made = []
     for name, recipe in METHODS.items():
-        if name in (*PREDICTORS, "motion-deficit"):
+        if name in (*PREDICTORS, "motion-deficit", "bicycle-kalman"):
             continue
         build = SMALL.get(name, recipe.build)
         monitor = build(log.between(end_s=240.0), 0, Session()).monitor
@@ -46,6 +46,7 @@ def recipes() -> list[Case]:
     return made
 
 
+BACK_S = 3.0  # the bicycle's filter begins anew
 PLAN = Plan(epochs=3, batch=256)
 SMALL = {"bp-autoencoder": functools.partial(bp_autoencoder.build, plan=Plan(epochs=100, batch=256, rate=0.01))}
 PREDICTORS = {
@@ -88,6 +89,15 @@ def deficit() -> Case:
     return Case("motion-deficit", monitor, rows, lie, back_s, named=(6, 7, 8, 9), lost=lost)
 
 
+def bicycle() -> Case:
+    """The bicycle's filter, which accuses the motion and no channel, where the car is under way."""
+    log = drive(300.0, seed=3).log.select([*IMU, *POSITION, "gnss.speed", "gnss.course"])
+    monitor = METHODS["bicycle-kalman"].build(log.between(120.0, 240.0), 0, Session()).monitor
+    part = log.between(*UNDER_WAY)
+    lie = np.concatenate([np.zeros(6), np.deg2rad([0.01, 0.01]), [40.0], [2.0]])
+    return Case("bicycle-kalman", monitor, samples(part.time, part.value, part.fresh), lie, BACK_S, named=())
+
+
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
     """The monitor of a joint test and one of repeats, for its channels in another order."""
     residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
@@ -128,4 +138,4 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 @functools.cache
 def cases() -> tuple[Case, ...]:
-    return (*zoo(), *recipes(), *predictors(), deficit())
+    return (*zoo(), *recipes(), *predictors(), deficit(), bicycle())

@@ -65,4 +65,6 @@ def _log(vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tu
         name=vehicle.name,
         notes=notes,
         epoch_s=epoch,
+        wheelbase_m=vehicle.wheelbase_m,
+        steering_ratio=vehicle.steering_ratio,
     )

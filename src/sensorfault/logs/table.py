@@ -53,6 +53,7 @@ class Log:
 
     `time` [s] rises strictly and starts at 0 at the first row read (`epoch_s`, Unix time, if the file knew it).
     `value` is SI, NaN where nothing arrived. `fresh` marks new measurements, not held ones: fresh implies a value.
+    `wheelbase_m` and `steering_ratio` are the vehicle's, if its file says them.
     `notes`: what reading found that a person should know (clock faults, held rows, guesses), one sentence each.
     """
 
@@ -64,6 +65,8 @@ class Log:
     name: str = "log"
     notes: tuple[str, ...] = ()
     epoch_s: float | None = None
+    wheelbase_m: float | None = None
+    steering_ratio: float | None = None
 
     def __post_init__(self) -> None:
         rows, width = self.value.shape

@@ -4,6 +4,8 @@
 name = "dresden"
 epoch_s = 1395837505.1     # optional: Unix time at time 0, where the files do not know it
 zero_s = 0.0               # optional: what the clock shows at time 0; left out: at the first row
+wheelbase_m = 2.65         # optional: distance of the axles, with which a steering angle turns the bicycle model
+steering_ratio = 14.5      # optional: angle of the steering wheel over that of the front wheels; else learned
 
 [file.log]                 # one table for each file of the log
 path = "drive.csv"         # beside this file; may be left out if the log is one file
@@ -47,6 +49,8 @@ class VehicleFile:
     sensors: tuple[SensorEntry, ...]
     epoch_s: float | None = None
     zero_s: float | None = None
+    wheelbase_m: float | None = None
+    steering_ratio: float | None = None
     notes: tuple[str, ...] = field(default=(), compare=False)
 
     @classmethod
@@ -85,6 +89,9 @@ class VehicleFile:
             lines.append(f"epoch_s = {self.epoch_s!r}")
         if self.zero_s is not None:
             lines.append(f"zero_s = {self.zero_s!r}")
+        for name in ("wheelbase_m", "steering_ratio"):
+            if (size := getattr(self, name)) is not None:
+                lines.append(f"{name} = {size!r}")
         for file in self.files:
             lines += ["", *file_lines(file)]
         for sensor in self.sensors:
@@ -95,13 +102,23 @@ class VehicleFile:
 def _vehicle(top: TomlTable, where: str) -> VehicleFile:
     top.only("vehicle", "file", "sensor")
     head = TomlTable(top.content.get("vehicle", {}), where, "vehicle")
-    head.only("name", "epoch_s", "zero_s")
+    head.only("name", "epoch_s", "zero_s", "wheelbase_m", "steering_ratio")
+    sizes = {name: head.number(name) for name in ("wheelbase_m", "steering_ratio")}
+    for name, size in sizes.items():
+        if size is not None and not 0 < size < float("inf"):
+            raise LogError(f"{where}: [vehicle] {name} = {size:g} is none; give a number above 0, or leave it out.")
     files = tuple(_file(name, table) for name, table in top.tables("file"))
     sensors = tuple(_sensor(name, table, files) for name, table in top.tables("sensor"))
     if not files or not sensors:
         raise LogError(f"{where}: a vehicle needs a file and a sensor; write [file.log] and [sensor.NAME].")
     return VehicleFile(
-        head.text("name") or "vehicle", files, sensors, epoch_s=head.number("epoch_s"), zero_s=head.number("zero_s")
+        head.text("name") or "vehicle",
+        files,
+        sensors,
+        epoch_s=head.number("epoch_s"),
+        zero_s=head.number("zero_s"),
+        wheelbase_m=sizes["wheelbase_m"],
+        steering_ratio=sizes["steering_ratio"],
     )
 
 

@@ -74,7 +74,13 @@ def as_table(log: Log, file_name: str | None = None) -> tuple[pl.DataFrame, Vehi
         )
         entries.append(_entry(sensor, channels, sensor_epoch))
     vehicle = VehicleFile(
-        log.name, (FileEntry(path=file_name, time=TIME),), tuple(entries), epoch_s=log.epoch_s, zero_s=0.0
+        log.name,
+        (FileEntry(path=file_name, time=TIME),),
+        tuple(entries),
+        epoch_s=log.epoch_s,
+        zero_s=0.0,
+        wheelbase_m=log.wheelbase_m,
+        steering_ratio=log.steering_ratio,
     )
     return frame.with_columns(counts), vehicle
 

@@ -3,6 +3,7 @@
 from sensorfault.logs.table import LogError
 from sensorfault.methods import (
     ar_predictor,
+    bicycle_kalman,
     bp_autoencoder,
     elm_autoencoder,
     elm_cross_validated,
@@ -30,6 +31,7 @@ _RECIPES = (
     persistence.RECIPE,
     linear_extrapolation.RECIPE,
     motion_deficit.RECIPE,
+    bicycle_kalman.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = elm_cross_validated.RECIPE.name

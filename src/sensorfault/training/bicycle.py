@@ -1,0 +1,288 @@
+"""Noise, lags and mounting of the bicycle-model Kalman filter, from a healthy drive."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+from collections.abc import Callable
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.logs.table import Log, LogError
+from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
+from sensorfault.run import samples
+from sensorfault.training.mounting import fit_mounting
+from sensorfault.types import Sample, Trust
+from sensorfault.vehicles.car import Roles, moving
+
+MOST_ROWS = 12000  # of the drive, from where it moves first, that the noise is fitted to
+WARM_S = 10.0  # of a filter's start that do not count
+HUBER = 3.0  # an innovation beyond so many standard deviations counts by its size, not its square
+ROUNDS = 15  # of the search for noise and lags
+FIRST_STEP = (0.7,) * 8 + (0.1, 0.1, 0.02)
+LEAST_MOVING_S = 20.0
+BIAS_WALK = 1e-8  # of the turn's bias [(rad/s)^2 per s], slower than a short drive can tell
+# sd of: way [m/√s], heading [rad/√s], speed [m/s/√s], bias of acceleration [m/s^2/√s], a fix along and across [m],
+# velocity [m/s]
+START = (0.1, 0.01, 0.3, 0.05, 0.1, 0.1, 0.05)
+LEAST = (1e-3, 1e-4, 1e-2, 1e-3, 1e-2, 1e-2, 1e-2)
+FARTHEST = (0.5, 0.5, 0.1)  # lag of position and velocity [s], logarithm of the scale of the speed
+
+
+def fit_bicycle(
+    log: Log, found: Roles, wheelbase_m: float | None = None, steering_ratio: float | None = None
+) -> BicycleKalman:
+    """The filter for a car whose healthy drive this is, Q, R and lags by likelihood.
+
+    The steering angle turns the model where the log and a wheelbase are given, else the gyro.
+
+    Raises:
+        LogError: a wheelbase that is none, a channel that is missing, or a drive that hardly moves.
+    """
+    if wheelbase_m is not None and not wheelbase_m > 0:
+        raise LogError(f"{log.name}: the wheelbase is {wheelbase_m:g} m; give the distance of the axles, above 0.")
+    _check(log, found)
+    fitted = _descend(_start(log, found, wheelbase_m, steering_ratio), log, found)
+    healthy: BicycleKalman = eqx.tree_at(lambda m: m.spread, fitted, jnp.asarray(healthy_spread(fitted, log)))
+    return healthy
+
+
+def _check(log: Log, found: Roles) -> None:
+    steered = found.steering is not None
+    lacking = [
+        words
+        for missing, words in (
+            (found.position is None, "latitude and longitude"),
+            (found.speed is None and (found.north is None or found.east is None), "speed"),
+            (found.gyro is None and not steered, "gyro with x, y, z, nor a steering angle"),
+        )
+        if missing
+    ]
+    if lacking:
+        raise LogError(
+            f"{log.name} has no {lacking[0]}, which the bicycle model needs; name the columns in vehicle.toml."
+        )
+    times = moving(log, found) if found.velocity else _fast(log, found)
+    seconds = len(times) * _period(log, found)
+    if seconds < LEAST_MOVING_S:
+        raise LogError(
+            f"{log.name} moves faster than 2 m/s for {seconds:.0f} s, the bicycle model needs {LEAST_MOVING_S:g} s; "
+            "give a drive that moves."
+        )
+
+
+def _fast(log: Log, found: Roles) -> Float[np.ndarray, " N"]:
+    assert found.speed is not None
+    times: Float[np.ndarray, " N"] = log.time[log.fresh[:, found.speed] & (np.abs(log.value[:, found.speed]) > 2.0)]
+    return times
+
+
+def _velocity(found: Roles) -> tuple[int, ...]:
+    if found.north is not None and found.east is not None:
+        return found.north, found.east
+    assert found.speed is not None
+    return (found.speed,)
+
+
+def _period(log: Log, found: Roles) -> float:
+    """Usual time between two velocities [s]."""
+    return float(np.median(np.diff(log.time[log.fresh[:, _velocity(found)[0]]])))
+
+
+def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: float | None) -> BicycleKalman:
+    """The filter with the mounting of its sensors, and noise still to be fitted."""
+    assert found.position is not None
+    steered = found.steering is not None and wheelbase_m is not None
+    accelerometer: tuple[int, ...] = found.accelerometer or ()
+    forward, push = np.zeros(3), 0.0
+    turning, lean = np.ones(1), 0.0
+    try:
+        mounted = fit_mounting(log, found)
+    except LogError:
+        if not steered:
+            raise
+        forward, push = _push(log, found)  # too straight a drive to tell how the gyro sits, but that is not needed
+    else:
+        forward = mounted.thrust * mounted.forward
+        push = float(forward @ mounted.accelerometer_bias)
+        turning = -mounted.yaw  # a course counts clockwise, φ the other way round
+        lean = float(turning @ mounted.gyro_bias)
+    if found.steering is not None and wheelbase_m is not None:
+        gain, lean = steering(log, found, wheelbase_m)
+        turning = np.array([np.copysign(1 / steering_ratio, gain) if steering_ratio else gain])
+    velocity = _velocity(found)
+    return BicycleKalman(
+        columns=Columns(
+            position=found.position,
+            velocity=velocity,
+            accelerometer=accelerometer,
+            gyro=() if steered else found.gyro or (),
+            steering=(found.steering,) if steered and found.steering is not None else (),
+        ),
+        forward=jnp.asarray(forward),
+        turning=jnp.asarray(turning),
+        wheelbase=jnp.asarray(wheelbase_m or 1.0),
+        q=jnp.ones(6),
+        r=jnp.ones(2 + len(velocity)),
+        spread=jnp.ones(2 + len(velocity)),
+        smooth_s=jnp.asarray(0.1),
+        late_s=jnp.zeros(2),
+        speed_scale=jnp.ones(()),
+        bias=jnp.asarray([lean, push]),
+        bias_spread=jnp.asarray([0.005, 0.3]),
+        channels=len(log.channels),
+    )
+
+
+def steering(log: Log, found: Roles, wheelbase_m: float) -> tuple[float, float]:
+    """Front wheel angle = gain . steering angle - offset: from how the course turns, by least squares.
+
+    l (course rate) / v = tan δ, small angles; anticlockwise is positive. One over `gain` is the steering ratio.
+
+    Raises:
+        LogError: no course to learn it from.
+    """
+    if found.velocity is None or found.steering is None:
+        raise LogError(f"{log.name} has no course over ground, which the steering ratio is learned from.")
+    first, second = found.velocity
+    rows = log.fresh[:, second] & np.isfinite(log.value[:, [first, second]]).all(axis=1)
+    a, b = log.value[rows, first], log.value[rows, second]
+    speed, course = (np.abs(a), b) if found.polar else (np.hypot(a, b), np.arctan2(b, a))
+    time, course = log.time[rows], np.unwrap(course)
+    there = np.isfinite(log.value[:, found.steering])
+    angle = np.interp(log.time, log.time[there], log.value[there, found.steering])
+    turned = np.concatenate([[0.0], np.cumsum((angle[1:] + angle[:-1]) / 2 * np.diff(log.time))])
+    at = np.arange(time[0] + 3.0, time[-1], 0.2)
+    way = np.interp(at, time, speed)
+    at, way = at[way > 3.0], way[way > 3.0]
+    curvature = -(np.interp(at, time, course) - np.interp(at - 1, time, course)) / np.maximum(way, 3.0)
+    best = (np.inf, 0.0, 0.0)
+    for lag in np.arange(0.0, 1.5, 0.05):
+        mean = np.interp(at - lag, log.time, turned) - np.interp(at - lag - 1, log.time, turned)
+        (gain, offset), left, *_ = np.linalg.lstsq(
+            np.stack([mean, np.ones(len(at))], axis=1), wheelbase_m * curvature, rcond=None
+        )
+        if left.size and left[0] < best[0]:
+            best = float(left[0]), float(gain), float(-offset)
+    return best[1], best[2]
+
+
+def _push(log: Log, found: Roles) -> tuple[Float[np.ndarray, "3"], float]:
+    """Speed rate = f . accelerometer - bias, by least squares over one second; nothing where a channel is missing."""
+    if found.accelerometer is None or found.speed is None:
+        return np.zeros(3), 0.0
+    rows = log.fresh[:, found.speed] & np.isfinite(log.value[:, found.speed])
+    at = np.arange(log.time[0] + 2.0, log.time[-1], 0.2)
+    speed = np.interp(np.stack([at, at - 1]), log.time[rows], log.value[rows, found.speed])
+    columns = [np.ones(len(at))]
+    for column in found.accelerometer:
+        there = np.isfinite(log.value[:, column])
+        value = np.interp(log.time, log.time[there], log.value[there, column])
+        total = np.concatenate([[0.0], np.cumsum((value[1:] + value[:-1]) / 2 * np.diff(log.time))])
+        columns.append(np.interp(at, log.time, total) - np.interp(at - 1, log.time, total))
+    level, *f = np.linalg.lstsq(np.stack(columns, axis=1), speed[0] - speed[1], rcond=None)[0]
+    return np.array(f), -float(level)
+
+
+def innovations(
+    filter: BicycleKalman, rows: Sample
+) -> tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"]]:
+    """Innovation along and across the heading and of the velocities, their standard deviations, and which there are."""
+
+    def one(belief, sample):  # type: ignore[no-untyped-def]
+        _, work = filter.evaluate(belief, sample)
+        nobody = jnp.zeros_like(sample.fresh)
+        belief = filter.update(work, Trust(sample.value, sample.fresh, nobody, sample.fresh, sample.born))
+        return belief, (work.innovation, jnp.sqrt(jnp.diagonal(work.s)), work.there)
+
+    told: tuple[Array, Array, Array] = jax.lax.scan(one, filter.init(), rows)[1]
+    return told
+
+
+def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
+    """Q, R, lags and the scale of the speed by the likelihood of the innovations, Huber's for their squares."""
+    start = int(np.searchsorted(log.time, _first(log, found) - 1.0))
+    cut = slice(start, start + MOST_ROWS)
+    rows = samples(log.time[cut], log.value[cut], log.fresh[cut])
+    warm = rows.time > rows.time[0] + min(WARM_S, float(rows.time[-1] - rows.time[0]) / 4)
+    least = jnp.log(jnp.asarray(LEAST))
+
+    def made(x: Float[Array, "11"]) -> BicycleKalman:
+        way, heading, speed, push, along, across, velocity = jnp.exp(2 * jnp.maximum(x[:7], least))
+        late = jnp.clip(x[8:], -jnp.asarray(FARTHEST), jnp.asarray(FARTHEST))
+        q = jnp.stack([way, way, heading, speed, jnp.asarray(BIAS_WALK), push])
+        r = jnp.concatenate([jnp.stack([along, across]), jnp.full(len(filter.r) - 2, velocity)])
+        new: BicycleKalman = eqx.tree_at(
+            lambda m: (m.q, m.r, m.smooth_s, m.late_s, m.speed_scale),
+            filter,
+            (q, r, jnp.clip(jnp.exp(x[7]), 1e-3, 2.0), late[:2], jnp.exp(late[2])),
+        )
+        return new
+
+    @jax.jit
+    def loss(x: Float[Array, "11"]) -> Float[Array, ""]:
+        e, sigma, there = innovations(made(x), rows)
+        there = there & warm[:, None]
+        z = jnp.abs(jnp.where(there, e / sigma, 0.0))
+        # -2 ln p = ln S + z², with Huber's 2 k |z| - k² beyond k
+        size = jnp.where(z < HUBER, z**2, 2 * HUBER * z - HUBER**2)
+        return jnp.where(there, 2 * jnp.log(sigma) + size, 0.0).sum() / jnp.maximum(there.sum(), 1)
+
+    return made(jnp.asarray(_search(lambda x: float(loss(jnp.asarray(x))))))
+
+
+def _search(loss: Callable[[Float[np.ndarray, "11"]], float]) -> Float[np.ndarray, "11"]:
+    """Pattern search (Hooke & Jeeves 1961): a replay costs a hundredth of compiling its gradient."""
+    x = np.array([*np.log(START), np.log(0.1), 0.0, 0.0, 0.0])
+    step = np.array(FIRST_STEP)
+    best = loss(x)
+    for _ in range(ROUNDS):
+        before = x.copy()
+        for k in range(len(x)):
+            for sign in (1, -1):
+                tried = x.copy()
+                tried[k] += sign * step[k]
+                if (value := loss(tried)) < best:
+                    x, best = tried, value
+                    step[k] *= 1.3 * sign  # and this way first the next time
+                    break
+            else:
+                step[k] /= 2
+        along = 2 * x - before
+        if (value := loss(along)) < best:
+            x, best = along, value
+    return x
+
+
+def _first(log: Log, found: Roles) -> float:
+    times = moving(log, found) if found.velocity else _fast(log, found)
+    return float(times[0])
+
+
+def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
+    """Root mean square of each normalised innovation, without the start and the largest two of a thousand."""
+    rows = samples(log.time, log.value, log.fresh)
+    e, sigma, there = (np.asarray(x) for x in jax.jit(innovations)(filter, rows))
+    late = log.time > log.time[0] + WARM_S
+    spread = np.ones(e.shape[1])
+    for k in range(len(spread)):
+        z = np.sort(np.abs(e[:, k] / sigma[:, k])[there[:, k] & late])
+        kept = z[: max(int(0.998 * z.size), 1)]
+        if kept.size:
+            spread[k] = max(float(np.sqrt((kept**2).mean())), 1e-3)
+    return spread
+
+
+def normalised(filter: BicycleKalman, log: Log) -> Float[np.ndarray, "T C"]:
+    """e / √S of each channel, NaN where nothing was measured or the filter had not begun."""
+
+    def one(belief, sample):  # type: ignore[no-untyped-def]
+        residual, work = filter.evaluate(belief, sample)
+        nobody = jnp.zeros_like(sample.fresh)
+        belief = filter.update(work, Trust(sample.value, sample.fresh, nobody, sample.fresh, sample.born))
+        return belief, jnp.where(residual.valid, residual.value / jnp.sqrt(jnp.diagonal(residual.cov)), jnp.nan)
+
+    rows = samples(log.time, log.value, log.fresh)
+    return np.asarray(jax.jit(lambda f, r: jax.lax.scan(one, f.init(), r)[1])(filter, rows))
