@@ -6,6 +6,8 @@ from jaxtyping import Array, Bool, Float
 
 from sensorfault.types import Sample, Trust
 
+STANDING = 0.1  # [m/s]
+
 
 class Inertial(eqx.Module):
     """Rates of course and speed out of a gyro and an accelerometer, fitted by training/mounting.py.
@@ -40,9 +42,12 @@ class Inertial(eqx.Module):
 
 
 def turned(velocity: Float[Array, "2"], by: Float[Array, ""], faster: Float[Array, ""]) -> Float[Array, "2"]:
-    """A velocity (east, north) turned clockwise [rad] and made faster along itself [m/s]; never backwards."""
+    """A velocity (east, north) turned clockwise [rad] and made faster along itself [m/s]; never backwards.
+
+    One below STANDING knows no direction to be made faster in.
+    """
     east, north = velocity
     cos, sin = jnp.cos(by), jnp.sin(by)
     speed = jnp.linalg.norm(velocity)
-    factor = jnp.maximum(speed + faster, 0.0) / jnp.maximum(speed, 0.1)
+    factor = jnp.where(speed > STANDING, jnp.maximum(speed + faster, 0.0) / jnp.maximum(speed, STANDING), 1.0)
     return jnp.stack([east * cos + north * sin, north * cos - east * sin]) * factor
