@@ -71,6 +71,10 @@ def _chunk(
     return done
 
 
+def _told(monitor: Monitor, state: MonitorState, sample: Sample) -> Replayed:
+    return _keep(monitor.step(state, sample)[1])
+
+
 def _strong(tree: tuple[Monitor, MonitorState]) -> tuple[Monitor, MonitorState]:
     """Without weak types, which would compile the same step again."""
     made: tuple[Monitor, MonitorState] = jax.tree.map(lambda x: jnp.asarray(x, jnp.result_type(x)), tree)
@@ -95,5 +99,5 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
         told.append([np.asarray(part) for part in kept])
         if progress:
             progress(min(1.0, (start + CHUNK) / total))
-    example: Replayed = jax.eval_shape(lambda: _keep(monitor.step(state, jax.tree.map(lambda x: x[0], chunk))[1]))
+    example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
     return unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))

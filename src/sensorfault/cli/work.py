@@ -130,15 +130,17 @@ def suspects(model: "Model") -> tuple[str, ...]:
 
 
 def not_watched(model: "Model") -> tuple[str, ...]:
-    """Which channels are watched for silence only, and why."""
+    """Which parts of the method this log does not allow, which channels are watched for silence only, and why."""
+    parts: dict[str, str] = model.summary.get("cannot", {})
+    said = tuple(f"Not running {part}: {reason}" for part, reason in parts.items())
     reasons: dict[str, str] = model.summary.get("not_watched", {})
     if not reasons:
-        return ()
+        return said
     by_reason: dict[str, list[str]] = {}
     for path, reason in reasons.items():
         by_reason.setdefault(reason, []).append(path)
-    said = "; ".join(f"{', '.join(paths)} ({reason})" for reason, paths in by_reason.items())
-    return (f"Watched for silence only: {said}.",)
+    silent = "; ".join(f"{', '.join(paths)} ({reason})" for reason, paths in by_reason.items())
+    return (*said, f"Watched for silence only: {silent}.")
 
 
 def detect(model: "Model", log: "Log", what: str = "judging") -> "Detection":

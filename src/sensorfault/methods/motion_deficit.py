@@ -84,7 +84,7 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         },
     }
     if reason:
-        told["left_out"] = f"velocity against the inertial unit: {reason}"
+        told["cannot"] = {"velocity against the inertial unit": reason}
     return Model(
         method=name,
         monitor=monitor,

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.conditioned import conditioned

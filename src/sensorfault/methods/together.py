@@ -1,0 +1,154 @@
+"""Several fitted methods as one monitor, under one budget of false alarms."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.recipe import Recipe
+from sensorfault.model import Model, hold_s, owners
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Monitor
+from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.several import Several
+from sensorfault.monitor.statistic.of import Of
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.monitor.threshold.scaled_max import ScaledMax
+from sensorfault.stage import Stage
+from sensorfault.training.cross_validation import BLOCKS
+from sensorfault.training.limits import tail_limit
+from sensorfault.training.session import Session
+from sensorfault.training.tapes import deaf, score_tape
+
+MOST = 2  # sensors that one sample may exclude
+
+
+def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed: int, session: Session) -> Model:
+    """Every part that the log allows, each answering for the channels it watches, the first of several before others.
+
+    The parts' limits are calibrated anew: each branch has an equal share of `per_hour` false alarms, extrapolated from
+    scores on blocks of the log that the part was not fitted on, and stays above the part's own limit. Tests of exact
+    repeats keep their own limits, which promise far less. What a part said why it cannot run is in `summary["cannot"]`.
+
+    Raises:
+        LogError: no part can be fitted on this log.
+    """
+    fitted: list[tuple[Recipe, Model]] = []
+    cannot: dict[str, str] = {}
+    for recipe in parts:
+        session.tell(f"fitting {recipe.name}")
+        try:
+            model = recipe.build(log, seed, session)
+            cannot |= model.summary.get("cannot", {})
+            fitted.append((recipe, model))
+        except LogError as error:
+            cannot[recipe.name] = str(error)
+    if not fitted:
+        raise LogError(" ".join(cannot.values()))
+    models = [model for _, model in fitted]
+    session.tell("calibrating the limits")
+    tapes = _unseen_scores(log, fitted, seed, session)
+    limits = _limits(models, tapes, log.period_s, per_hour)
+    first = _answering(models)
+    of = np.argmax(first, axis=0)  # the part that answers for each channel
+    sigma = tuple(models[p].sigma[c] for c, p in enumerate(of))
+    watched = first[of, np.arange(len(of))]
+    reasons = {
+        path: reason
+        for model in models
+        for path, reason in model.summary.get("not_watched", {}).items()
+        if not watched[log.index(path)]
+    }
+    told: dict[str, Any] = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "not_watched": reasons,
+        "parts": [recipe.name for recipe, _ in fitted],
+        "cannot": cannot,
+        "promised_per_hour": per_hour,
+    }
+    tests = tuple(test for model in models for test in model.tests)
+    monitor = _joined(log, models, limits)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)
+
+
+def _answering(models: Sequence[Model]) -> Bool[np.ndarray, "P C"]:
+    """Which part answers for which channel: of those that watch it the first."""
+    watched = np.array([model.watched for model in models])
+    first: Bool[np.ndarray, "P C"] = watched & (np.cumsum(watched, axis=0) == 1)
+    return first
+
+
+def _joined(log: Log, models: Sequence[Model], limits: Sequence[Stage[Any, Any, Any, Any]]) -> Monitor:
+    """The parts' residuals side by side, and all their branches, with these thresholds."""
+    first = _answering(models)
+    channels = len(log.channels)
+    branches = [
+        replace(branch, statistic=Of(branch.statistic, part))
+        for part, model in enumerate(models)
+        for branch in model.monitor.branches
+    ]
+    horizon_s, readmit_s = jnp.zeros(channels), jnp.zeros(channels)
+    for mine, model in zip(first, models, strict=True):
+        if isinstance(recovery := model.monitor.recovery, Rebuild):
+            horizon_s = jnp.where(mine, recovery.horizon_s, horizon_s)
+            readmit_s = jnp.where(mine, recovery.readmit_s, readmit_s)
+    return Monitor(
+        residual=Several(tuple(model.monitor.residual for model in models), jnp.asarray(first)),
+        branches=tuple(replace(branch, threshold=limit) for branch, limit in zip(branches, limits, strict=True)),
+        decision=Exceed(share=1.0),
+        recovery=Rebuild(horizon_s, readmit_s, channels),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+        most=MOST,
+        together=False,
+    )
+
+
+def _unseen_scores(
+    log: Log, fitted: Sequence[tuple[Recipe, Model]], seed: int, session: Session
+) -> tuple[Float[np.ndarray, "T K"], ...]:
+    """The scores of every branch on blocks that its part was not fitted on, limits off."""
+    blocks = np.array_split(np.arange(len(log)), BLOCKS)
+    told = []
+    for n, block in enumerate(blocks):
+        session.tell(f"calibrating the limits, block {n + 1} of {BLOCKS}")
+        rest = log.without(block)
+        models = [_refitted(rest, recipe, model, seed) for recipe, model in fitted]
+        monitor = deaf(_joined(log, models, [branch.threshold for m in models for branch in m.monitor.branches]))
+        told.append([score[block] for score in score_tape(monitor, log)])
+    return tuple(np.concatenate(scores) for scores in zip(*told, strict=True))
+
+
+def _refitted(rest: Log, recipe: Recipe, model: Model, seed: int) -> Model:
+    """The part fitted on the rest of the log; on the whole, where the rest alone does not do."""
+    try:
+        return recipe.build(rest, seed, Session())
+    except LogError:
+        return model
+
+
+def _limits(
+    models: Sequence[Model], tapes: Sequence[Float[np.ndarray, "T K"]], period_s: float, per_hour: float
+) -> list[Stage[Any, Any, Any, Any]]:
+    """An equal share of the budget for each branch, and of that for each of its tests; exact repeats keep theirs."""
+    branches = [branch for model in models for branch in model.monitor.branches]
+    sharing = sum(not branch.certain for branch in branches)
+    limits: list[Stage[Any, Any, Any, Any]] = []
+    for branch, tape in zip(branches, tapes, strict=True):
+        share = per_hour / (sharing * tape.shape[1])
+        limit = np.maximum(_own(branch.threshold), tail_limit(tape, period_s, share))
+        limits.append(branch.threshold if branch.certain else Fixed(jnp.asarray(limit)))
+    return limits
+
+
+def _own(threshold: Stage[Any, Any, Any, Any]) -> Float[np.ndarray, " K"]:
+    """The fixed limit that a part came with, below which it does not alarm here either."""
+    if isinstance(threshold, ScaledMax):
+        return np.asarray(threshold.fixed_point())
+    assert isinstance(threshold, Fixed)
+    return np.asarray(threshold.limit)
