@@ -64,16 +64,15 @@ def train(net: Net, windows: Windows, plan: Plan, seed: int, session: Session = 
     learn, validate = split(windows, plan.validation)
     examples, unseen = learn.on_device(), validate.on_device()
     size = min(plan.batch, len(learn.first))
-    net = jax.tree.map(lambda x: jnp.asarray(x, jnp.float32), net)
-    now = _Now(net, _ADAM.init(net), net, jnp.float32(plan.rate))
-    saved = Checkpoint.of(session.checkpoint, now, (net, tuple(windows), plan, seed))
+    now = begin(net, plan.rate)
+    saved = Checkpoint.of(session.checkpoint, now, (now, tuple(windows), plan, seed))
     now, learned, validated = saved.resumed(now)
     best = int(np.argmin(validated)) + 1 if validated else 0
     while len(validated) < plan.epochs and len(validated) - best < plan.patience:
         epoch = len(validated) + 1
         order = np.random.default_rng((seed, epoch)).permutation(len(learn.first))
         batches = order[: len(order) // size * size].reshape(-1, size).astype(np.int32)
-        now, error = _epoch(now, examples, jnp.asarray(batches), windows.length)
+        now, error = one_epoch(now, examples, jnp.asarray(batches), windows.length)
         learned.append(float(error))
         validated.append(float(_error(now.net, unseen, windows.length)))
         if not best or validated[-1] < validated[best - 1]:
@@ -109,8 +108,8 @@ def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
     return learn, judge
 
 
-class _Now(NamedTuple):
-    """Where a training stands."""
+class Now(NamedTuple):
+    """Where a training stands; all of it in float32."""
 
     net: Any
     optimiser: Any
@@ -121,6 +120,12 @@ class _Now(NamedTuple):
 _ADAM = optax.scale_by_adam()
 
 
+def begin(net: Any, rate: float) -> Now:
+    """A training before its first epoch."""
+    net = jax.tree.map(lambda x: jnp.asarray(x, jnp.float32), net)
+    return Now(net, _ADAM.init(net), net, jnp.asarray(rate, jnp.float32))
+
+
 def _loss(net: Callable[..., Any], x: Float32[Array, "s C B"], y: Float32[Array, "D B"]) -> Float32[Array, " B"]:
     # (12) L = mean (y - y~)²
     square: Float32[Array, " B"] = ((net(x) - y) ** 2).mean(axis=0)
@@ -128,7 +133,9 @@ def _loss(net: Callable[..., Any], x: Float32[Array, "s C B"], y: Float32[Array,
 
 
 @partial(jax.jit, static_argnums=3)
-def _epoch(now: _Now, examples: OnDevice, batches: Int32[Array, "K B"], length: int) -> tuple[_Now, Float32[Array, ""]]:
+def one_epoch(
+    now: Now, examples: OnDevice, batches: Int32[Array, "K B"], length: int
+) -> tuple[Now, Float32[Array, ""]]:
     """One pass over the batches: the training after it, and the mean error met on the way."""
 
     def step(carry: tuple[Any, Any], chosen: Int32[Array, " B"]) -> tuple[tuple[Any, Any], Float32[Array, ""]]:

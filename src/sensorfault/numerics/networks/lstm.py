@@ -1,4 +1,4 @@
-"""Long short-term memory: layers that read a window row by row."""
+"""Long short-term memory: layers of cells that read a window row by row."""
 
 import equinox as eqx
 import jax
@@ -7,6 +7,8 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from sensorfault.numerics.networks.dense import Dense
+
+Cells = tuple[Float[Array, "H *batch"], Float[Array, "H *batch"]]  # what they told last, what they remember
 
 
 class LstmLayer(eqx.Module):
@@ -20,39 +22,45 @@ class LstmLayer(eqx.Module):
     recurrent: Float[Array, "G H"]
     bias: Float[Array, " G"]
 
-    def __call__(self, rows: Float[Array, "s C *batch"]) -> Float[Array, "s H *batch"]:
-        """The cells' output after each row; a batch of windows stands on the last axis."""
-        batch = rows.shape[2:]
-        # W x + b of all rows in one product: nothing in it waits for the row before.
-        drive = jnp.einsum("gc,sc...->sg...", self.inputs, rows) + self.bias.reshape(-1, *(1 for _ in batch))[None]
+    def start(self, like: Float[Array, "C *batch"]) -> Cells:
+        """The cells before the first row."""
+        nothing = jnp.zeros((self.recurrent.shape[1], *like.shape[1:]), like.dtype)
+        return nothing, nothing
 
-        def step(
-            carry: tuple[Float[Array, "H *batch"], Float[Array, "H *batch"]], drive: Float[Array, "G *batch"]
-        ) -> tuple[tuple[Float[Array, "H *batch"], Float[Array, "H *batch"]], Float[Array, "H *batch"]]:
-            h, c = carry
-            # i, f, o = sigmoid(W x + U h + b),  g = tanh(W x + U h + b)
-            i, f, g, o = jnp.split(drive + self.recurrent @ h, 4)
-            # c⁺ = f c + i g,  h⁺ = o tanh(c⁺)
-            c = jax.nn.sigmoid(f) * c + jax.nn.sigmoid(i) * jnp.tanh(g)
-            h = jax.nn.sigmoid(o) * jnp.tanh(c)
-            return (h, c), h
-
-        start = jnp.zeros((self.recurrent.shape[1], *batch), rows.dtype)
-        told: Float[Array, "s H *batch"] = lax.scan(step, (start, start), drive)[1]
-        return told
+    def step(self, cells: Cells, x: Float[Array, "C *batch"]) -> Cells:
+        """The cells after one more row."""
+        h, c = cells
+        bias = self.bias.reshape(-1, *(1 for _ in x.shape[1:]))
+        # i, f, o = sigmoid(W x + U h + b),  g = tanh(W x + U h + b)
+        i, f, g, o = jnp.split(self.inputs @ x + self.recurrent @ h + bias, 4)
+        # c⁺ = f c + i g,  h⁺ = o tanh(c⁺)
+        c = jax.nn.sigmoid(f) * c + jax.nn.sigmoid(i) * jnp.tanh(g)
+        return jax.nn.sigmoid(o) * jnp.tanh(c), c
 
 
 class Lstm(eqx.Module):
     """Layers of cells over a window (s, C), and a linear output of D numbers after the last row.
 
-    Min et al. 2021, section 2.2: 8 inputs, two layers of 16, 2 outputs, a window of s = 30.
+    Min et al. 2021, section 2.2: 8 inputs, two layers of 16, 2 outputs, a window of s = 30. A batch of windows stands
+    on the last axis, where it fills the processor's lanes.
     """
 
     layers: tuple[LstmLayer, ...]
     output: Dense
 
     def __call__(self, window: Float[Array, "s C *batch"]) -> Float[Array, "D *batch"]:
-        rows = window
+        # All layers in one loop, the products with the inputs within: on two cores an epoch takes 0.7 times as long as
+        # with one loop a layer and those products taken out of it, which pays by writing and reading all gates once.
+        def step(cells: tuple[Cells, ...], x: Float[Array, "C *batch"]) -> tuple[tuple[Cells, ...], None]:
+            after = []
+            for layer, before in zip(self.layers, cells, strict=True):
+                after.append(layer.step(before, x))
+                x = after[-1][0]
+            return tuple(after), None
+
+        cells, x = [], window[0]
         for layer in self.layers:
-            rows = layer(rows)
-        return self.output(rows[-1])
+            cells.append(layer.start(x))
+            x = cells[-1][0]
+        end, _ = lax.scan(step, tuple(cells), window)
+        return self.output(end[-1][0])
