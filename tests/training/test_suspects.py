@@ -112,6 +112,28 @@ def test_coarse_readings_that_often_repeat_are_no_jam() -> None:
     assert leave_out(replace(log, value=value))[1] == ()
 
 
+def test_repeats_that_chance_explains_are_no_jam() -> None:
+    """Each measurement repeats the last with chance 0.8: a run of more than half a second is rare, not strange."""
+    log = healthy()
+    value = log.value.copy()
+    repeats = np.random.default_rng(3).random(len(value)) < 0.8
+    last_new = np.maximum.accumulate(np.where(repeats, 0, np.arange(len(value))))
+    value[:, 3] = value[last_new, 3]
+    runs = np.diff(np.flatnonzero(~repeats))
+    assert 1 <= (runs > 25).sum() <= 5
+    assert leave_out(replace(log, value=value))[1] == ()
+
+
+def test_an_offset_whose_end_nobody_sees_is_not_said_to_last() -> None:
+    """It fades away within three seconds: the rest of the log is healthy, and is not cut off."""
+    log = healthy()
+    value = log.value.copy()
+    size = 50 * value[:, 2].std()
+    value[3000:3200, 2] += size
+    value[3200:3350, 2] += size * np.linspace(1, 0, 150)
+    assert leave_out(replace(log, value=value))[1] == ()
+
+
 def test_isolation_by_hand() -> None:
     """A step of 8 on one sensor where 1 is usual, while the other sensor makes one of 2."""
     step = np.ones((75, 3))
