@@ -5,7 +5,7 @@ import pytest
 
 import fitted
 from sensorfault.training import limits
-from sensorfault.training.limits import LEAST_RUN, repeat_limit
+from sensorfault.training.limits import LEAST_RUN, repeat_limit, tail_limit
 
 PERIOD_S = 0.02
 
@@ -103,3 +103,46 @@ def test_repeats_are_limited_channel_by_channel() -> None:
     limit = np.asarray(model.monitor.branches[1].threshold.limit)
     np.testing.assert_array_equal(limit[:6], np.full(6, LEAST_RUN))  # white noise never repeats itself
     np.testing.assert_array_equal(limit[6:], np.full(2, np.inf))  # a fix is not watched
+
+
+def exponential(hours: float, seed: int, scale: float = 2.0) -> np.ndarray:
+    """Independent scores at 2 Hz."""
+    return scale * np.random.default_rng(seed).standard_exponential((round(hours * 7200), 1))
+
+
+def test_a_tail_is_extrapolated_to_the_rate_that_was_asked_for() -> None:
+    """Of ten minutes each: one exceedance an hour of 7200 is passed at scale log(7200)."""
+    limits = [float(tail_limit(exponential(1 / 6, seed), 0.5, 1.0)[0]) for seed in range(40)]
+    assert np.median(limits) == pytest.approx(2.0 * np.log(7200), rel=0.1)
+    unseen = exponential(50.0, 99)
+    rates = [float((unseen > limit).sum()) / 50.0 for limit in limits]
+    assert 0.3 < np.median(rates) < 3.0
+
+
+def test_a_tail_limit_stands_above_all_that_was_seen_and_scales_with_it() -> None:
+    scores = exponential(0.1, 3)
+    limit = tail_limit(scores, 0.5, 1.0)
+    assert limit[0] > scores.max()
+    np.testing.assert_allclose(tail_limit(1000 * scores, 0.5, 1.0), 1000 * limit)
+    assert (tail_limit(scores, 0.5, 0.1) > limit).all()
+
+
+def test_a_heavy_tail_is_taken_for_one_where_much_was_seen() -> None:
+    heavy = np.random.default_rng(0).pareto(3.0, (7200 * 5, 1))
+    light = exponential(5.0, 0, scale=float(heavy.mean()))
+    assert tail_limit(heavy, 0.5, 0.1)[0] > 3 * tail_limit(light, 0.5, 0.1)[0]
+
+
+def test_scores_that_come_seldom_are_extrapolated_over_the_same_time() -> None:
+    scores = exponential(1.0, 5)
+    held = np.full((5 * len(scores), 1), np.nan)
+    held[::5] = scores
+    np.testing.assert_allclose(tail_limit(held, 0.1, 1.0), tail_limit(scores, 0.5, 1.0), rtol=0.05)
+
+
+def test_a_test_that_never_ran_has_no_limit() -> None:
+    scores = np.full((100, 2), np.nan)
+    scores[:3, 1] = 1.0, 2.0, 3.0
+    silent, few = tail_limit(scores, 0.1, 1.0)
+    assert silent == np.inf
+    assert few >= 3.0

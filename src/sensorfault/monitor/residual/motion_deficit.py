@@ -12,7 +12,7 @@ from sensorfault.numerics.local import east_north, moved, on_the_map, wrapped
 from sensorfault.numerics.trail import Trail
 from sensorfault.types import NEVER, Residual, Sample, Trust
 from sensorfault.vehicles.car import ground_velocity
-from sensorfault.vehicles.inertial import Inertial, turned
+from sensorfault.vehicles.inertial import STANDING, Inertial, turned
 
 HOLD_S = 1.0  # for so long a velocity stands for the next
 GROWTH = 3.0  # what a velocity may change a second meanwhile [m/s^2]
@@ -43,6 +43,7 @@ class _State(NamedTuple):
     heard: Float[Array, ""]  # when it came [s]
     ground: Float[Array, "2"]  # the velocity now, without the receiver's lag [m/s]
     ahead: Float[Array, "2"]  # what the receiver's lag has not shown yet: turn [rad], speed [m/s]
+    stuck: Float[Array, ""]  # for how long a velocity has repeated itself to the last bit [s]
     trail: Trail
 
 
@@ -59,6 +60,7 @@ class _Work(NamedTuple):
     fix: Bool[Array, ""]
     ahead: tuple[Float[Array, "2"], Float[Array, "2"]]  # with this sample's word of the inertial unit, and without
     fresh: Bool[Array, " C"]
+    repeated: Bool[Array, ""]  # the velocity is to the last bit what it was
 
 
 class MotionDeficit(eqx.Module):
@@ -67,7 +69,8 @@ class MotionDeficit(eqx.Module):
     Min et al. 2021 look for jammed positions with a network (section 2.2); a frozen position leaves all of it missing.
     Speed and course are freed of the receiver's lag by the inertial unit, where there is one, and held for a second.
     Only trusted fixes become references, so under a long fault the reference grows old and `law` allows more: the
-    variance is law . (1, swing^2, path^2, age^2). After `afresh_s` without a trusted fix it begins anew.
+    variance is law . (1, swing^2, path^2, age^2). After `afresh_s` without a trusted fix it begins anew, and so it does
+    when a velocity moves on that was stuck for longer than HOLD_S: nobody knows where the car has been meanwhile.
     """
 
     law: Float[Array, "H 4"]  # [m^2], [s^2], [1], [m^2/s^2]
@@ -83,7 +86,7 @@ class MotionDeficit(eqx.Module):
 
     def init(self) -> _State:
         never = jnp.asarray(NEVER, float)
-        return _State(never, jnp.zeros(2), never, jnp.zeros(2), jnp.zeros(2), Trail.empty(self.slots))
+        return _State(never, jnp.zeros(2), never, jnp.zeros(2), jnp.zeros(2), jnp.zeros(()), Trail.empty(self.slots))
 
     def evaluate(self, state: _State, sample: Sample) -> tuple[Residual, _Work]:
         first, second = self.velocity
@@ -106,7 +109,8 @@ class MotionDeficit(eqx.Module):
         longer = (jnp.linalg.norm(now) - jnp.linalg.norm(held)) / 2 * since
         carried = state._replace(time=sample.time, ground=held, trail=trail)
         ahead = self._ahead(state.ahead, sample, dt)
-        work = _Work(carried, new, told, now, mended, longer, place, fix, ahead, sample.fresh)
+        repeated = (told == state.told).all() & (jnp.linalg.norm(told) > STANDING)
+        work = _Work(carried, new, told, now, mended, longer, place, fix, ahead, sample.fresh, repeated)
 
         here = _mended(work, new)
         length = jnp.where(lasting, jnp.maximum(jnp.linalg.norm(step) + jnp.where(new, longer, 0.0), 0.0), 0.0)
@@ -175,11 +179,15 @@ class MotionDeficit(eqx.Module):
 def _mended(work: _Work, by: Bool[Array, ""]) -> _State:
     """The state with this sample's velocity taken in, or without it."""
     state, trail = work.state, work.state.trail
+    since = jnp.clip(state.time - state.heard, 0.0, HOLD_S)
+    freed = by & ~work.repeated & (state.stuck > HOLD_S)
+    trail = trail.kept(~freed)
     way = trail.way + jnp.where(by & trail.there[:, None], work.mended[None], 0.0)
     path = trail.path + jnp.where(by & trail.there, work.longer, 0.0)
     return state._replace(
         told=jnp.where(by, work.told, state.told),
         heard=jnp.where(by, state.time, state.heard),
         ground=jnp.where(by, work.now, state.ground),
+        stuck=jnp.where(by, jnp.where(work.repeated, state.stuck + since, 0.0), state.stuck),
         trail=trail._replace(way=way, path=path),
     )

@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.numerics.local import wrapped
 from sensorfault.types import NEVER, Residual, Sample, Trust
 from sensorfault.vehicles.car import ground_velocity
-from sensorfault.vehicles.inertial import Inertial, turned
+from sensorfault.vehicles.inertial import STANDING, Inertial, turned
 
 SLOWEST = 3.0  # below this the inertial unit is led, not compared [m/s]
 HOLD_S = 1.0  # after so long without a velocity it begins anew
@@ -26,6 +26,8 @@ class _State(NamedTuple):
     time: Float[Array, ""]
     heard: Float[Array, ""]  # the last new velocity [s]
     believed: Float[Array, ""]  # the last trusted one [s]
+    told: Float[Array, "2"]  # ... and what it was, east and north [m/s]
+    stuck: Float[Array, ""]  # for how long it has repeated itself to the last bit [s]
     slow: Float[Array, ""]  # when the unit was last led [s]
     rates: Float[Array, "2"]  # as late as the receiver is
     velocity: Float[Array, "2"]  # by the inertial unit, east and north [m/s]
@@ -37,6 +39,8 @@ class _Work(NamedTuple):
     new: Bool[Array, ""]
     rates: Float[Array, "2"]  # with this sample's word of the inertial unit
     fresh: Bool[Array, " C"]
+    repeated: Bool[Array, ""]  # the velocity is to the last bit what it was
+    freed: Bool[Array, ""]  # ... and was so for long, and is no more
 
 
 class VelocityDeficit(eqx.Module):
@@ -44,7 +48,8 @@ class VelocityDeficit(eqx.Module):
 
     So slopes and biases, which last, are forgotten, and a receiver that freezes as a whole is seen as far as the car
     turns or changes its speed within that time. Trusted velocities alone lead it; `afresh_s` after the last of them it
-    begins anew. Below SLOWEST it is led by the receiver and nothing is compared.
+    begins anew, and so it does when a velocity moves on that was stuck for longer than HOLD_S and led it meanwhile.
+    Below SLOWEST it is led by the receiver and nothing is compared.
     """
 
     memory_s: Float[Array, ""]
@@ -57,7 +62,7 @@ class VelocityDeficit(eqx.Module):
 
     def init(self) -> _State:
         never = jnp.asarray(NEVER, float)
-        return _State(never, never, never, never, jnp.zeros(2), jnp.zeros(2))
+        return _State(never, never, never, jnp.zeros(2), jnp.zeros(()), never, jnp.zeros(2), jnp.zeros(2))
 
     def evaluate(self, state: _State, sample: Sample) -> tuple[Residual, _Work]:
         first, second = self.velocity
@@ -75,10 +80,12 @@ class VelocityDeficit(eqx.Module):
         east, north = by_unit / jnp.maximum(speed, 0.1)
         off = told - by_unit
         slip = jnp.stack([off[0] * east + off[1] * north, off[0] * north - off[1] * east])
-        ready = new & ~broken & (sample.time - slow >= self.memory_s / 4) & (speed >= SLOWEST)
+        repeated = (told == state.told).all() & (jnp.linalg.norm(told) > STANDING)
+        freed = new & ~repeated & (state.stuck > HOLD_S)
+        ready = new & ~broken & ~freed & (sample.time - slow >= self.memory_s / 4) & (speed >= SLOWEST)
         heard = jnp.where(new, sample.time, state.heard)
-        carried = _State(sample.time, heard, state.believed, slow, state.rates, by_unit)
-        work = _Work(carried, told, new, lagging, sample.fresh)
+        carried = state._replace(time=sample.time, heard=heard, slow=slow, velocity=by_unit)
+        work = _Work(carried, told, new, lagging, sample.fresh, repeated, freed)
         return self._residual(sample, by_unit, Slip(jnp.where(ready, slip, 0.0), ready)), work
 
     def update(self, work: _Work, trust: Trust) -> _State:
@@ -86,7 +93,7 @@ class VelocityDeficit(eqx.Module):
         believed = work.new & jnp.stack([trust.measured[i] for i in self.velocity]).all()
         since = state.time - state.believed
         lost = work.new & (since > self.afresh_s)
-        led = lost | (believed & (jnp.linalg.norm(told) < SLOWEST))
+        led = lost | (believed & (work.freed | (jnp.linalg.norm(told) < SLOWEST)))
         # v <- v + (1 - exp(-dt / T)) (told - v)
         gain = jnp.where(led, 1.0, jnp.where(believed, 1 - jnp.exp(-jnp.clip(since, 0.0, HOLD_S) / self.memory_s), 0.0))
         unit = self.inertial.trusted(trust, work.fresh)
@@ -94,6 +101,10 @@ class VelocityDeficit(eqx.Module):
             rates=jnp.where(unit, work.rates, state.rates),
             velocity=state.velocity + gain * (told - state.velocity),
             believed=jnp.where(believed | lost, state.time, state.believed),
+            told=jnp.where(believed, told, state.told),
+            stuck=jnp.where(
+                believed, jnp.where(work.repeated, state.stuck + jnp.clip(since, 0.0, HOLD_S), 0.0), state.stuck
+            ),
             slow=jnp.where(led | ~unit, state.time, state.slow),
         )
 
