@@ -14,7 +14,7 @@ from laws.cases import cases
 from laws.compilations import compilations
 from laws.damage import absent, alone, half, holed, lied, silenced, telling, troubled
 from laws.walk import Walk, assert_close, assert_same, finite, walk
-from sensorfault.monitor.monitor import Monitor
+from sensorfault.monitor.monitor import SUBJECTS, Monitor
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.run import Now, Stepper, fleet
 from sensorfault.types import FAULT, OK, UNKNOWN, Report, Sample
@@ -148,11 +148,17 @@ def test_infinite_limits(case: Case) -> None:
     silent = walk(with_limit(case.monitor, reports, np.inf), troubled(case))
     assert not (silent.channel == FAULT).any()
     assert not (silent.sample == FAULT).any()
+    assert not (silent.reports.verdict.motion == FAULT).any()
     loud = walk(with_limit(case.monitor, reports, -np.inf), troubled(case))
-    tested = np.concatenate([score.valid for score in loud.reports.scores], axis=1).any(axis=1)
-    assert tested.any()
-    assert (loud.sample[tested] == FAULT).all()
-    assert (loud.sensor[tested] == FAULT).any(axis=1).all()
+    scores = zip(case.monitor.branches, loud.reports.scores, strict=True)
+    tested = {subject: np.zeros(len(loud.sample), bool) for subject in SUBJECTS}
+    for branch, score in scores:
+        tested[branch.subject] |= score.valid.any(axis=1)
+    assert any(rows.any() for rows in tested.values())
+    assert (loud.sample[tested["sensor"]] == FAULT).all()
+    assert (loud.sensor[tested["sensor"]] == FAULT).any(axis=1).all()
+    if not tested["sensor"].any():  # with a sensor at fault nothing is said of the motion
+        assert (loud.reports.verdict.motion[tested["motion"]] == FAULT).all()
 
 
 # 4. What is not there is unknown, poisons nothing, and does not silence the others.

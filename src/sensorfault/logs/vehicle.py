@@ -89,9 +89,8 @@ class VehicleFile:
             lines.append(f"epoch_s = {self.epoch_s!r}")
         if self.zero_s is not None:
             lines.append(f"zero_s = {self.zero_s!r}")
-        for name in ("wheelbase_m", "steering_ratio"):
-            if (size := getattr(self, name)) is not None:
-                lines.append(f"{name} = {size!r}")
+        sizes = {"wheelbase_m": self.wheelbase_m, "steering_ratio": self.steering_ratio}
+        lines += [f"{name} = {size!r}" for name, size in sizes.items() if size is not None]
         for file in self.files:
             lines += ["", *file_lines(file)]
         for sensor in self.sensors:

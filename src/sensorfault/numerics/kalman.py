@@ -1,5 +1,7 @@
 """Covariances of an extended Kalman filter inside a compiled step: a handful of states, sums instead of LAPACK."""
 
+import sensorfault._jax  # isort: skip  # noqa: F401
+
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 

@@ -11,13 +11,13 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
+from sensorfault.monitor.residual.bicycle_kalman import Belief, BicycleKalman, Columns
 from sensorfault.run import samples
 from sensorfault.training.mounting import fit_mounting
 from sensorfault.types import Sample, Trust
 from sensorfault.vehicles.car import Roles, moving
 
-MOST_ROWS = 12000  # of the drive, from where it moves first, that the noise is fitted to
+MOST_ROWS = 8000  # of the drive, from where it moves first, that the noise is fitted to
 WARM_S = 10.0  # of a filter's start that do not count
 HUBER = 3.0  # an innovation beyond so many standard deviations counts by its size, not its square
 ROUNDS = 15  # of the search for noise and lags
@@ -186,19 +186,25 @@ def _push(log: Log, found: Roles) -> tuple[Float[np.ndarray, "3"], float]:
     return np.array(f), -float(level)
 
 
-def innovations(
+@jax.jit
+def told(
     filter: BicycleKalman, rows: Sample
-) -> tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"]]:
-    """Innovation along and across the heading and of the velocities, their standard deviations, and which there are."""
+) -> tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"], Float[Array, "T C"]]:
+    """What a filter that trusts everything makes of a log.
 
-    def one(belief, sample):  # type: ignore[no-untyped-def]
-        _, work = filter.evaluate(belief, sample)
+    Innovations along and across the heading and of the velocities, their standard deviations, which there are; and e
+    over √S of each channel, NaN where nothing was measured or the filter had not begun.
+    """
+
+    def one(belief: Belief, sample: Sample) -> tuple[Belief, tuple[Array, Array, Array, Array]]:
+        residual, work = filter.evaluate(belief, sample)
         nobody = jnp.zeros_like(sample.fresh)
         belief = filter.update(work, Trust(sample.value, sample.fresh, nobody, sample.fresh, sample.born))
-        return belief, (work.innovation, jnp.sqrt(jnp.diagonal(work.s)), work.there)
+        whole = jnp.where(residual.valid, residual.value / jnp.sqrt(jnp.diagonal(residual.cov)), jnp.nan)
+        return belief, (work.innovation, jnp.sqrt(jnp.diagonal(work.s)), work.there, whole)
 
-    told: tuple[Array, Array, Array] = jax.lax.scan(one, filter.init(), rows)[1]
-    return told
+    said: tuple[Array, Array, Array, Array] = jax.lax.scan(one, filter.init(), rows)[1]
+    return said
 
 
 def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
@@ -223,7 +229,7 @@ def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
 
     @jax.jit
     def loss(x: Float[Array, "11"]) -> Float[Array, ""]:
-        e, sigma, there = innovations(made(x), rows)
+        e, sigma, there, _ = told(made(x), rows)
         there = there & warm[:, None]
         z = jnp.abs(jnp.where(there, e / sigma, 0.0))
         # -2 ln p = ln S + z², with Huber's 2 k |z| - k² beyond k
@@ -264,7 +270,7 @@ def _first(log: Log, found: Roles) -> float:
 def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
     """Root mean square of each normalised innovation, without the start and the largest two of a thousand."""
     rows = samples(log.time, log.value, log.fresh)
-    e, sigma, there = (np.asarray(x) for x in jax.jit(innovations)(filter, rows))
+    e, sigma, there, _ = (np.asarray(x) for x in told(filter, rows))
     late = log.time > log.time[0] + WARM_S
     spread = np.ones(e.shape[1])
     for k in range(len(spread)):
@@ -278,11 +284,5 @@ def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
 def normalised(filter: BicycleKalman, log: Log) -> Float[np.ndarray, "T C"]:
     """e / √S of each channel, NaN where nothing was measured or the filter had not begun."""
 
-    def one(belief, sample):  # type: ignore[no-untyped-def]
-        residual, work = filter.evaluate(belief, sample)
-        nobody = jnp.zeros_like(sample.fresh)
-        belief = filter.update(work, Trust(sample.value, sample.fresh, nobody, sample.fresh, sample.born))
-        return belief, jnp.where(residual.valid, residual.value / jnp.sqrt(jnp.diagonal(residual.cov)), jnp.nan)
-
     rows = samples(log.time, log.value, log.fresh)
-    return np.asarray(jax.jit(lambda f, r: jax.lax.scan(one, f.init(), r)[1])(filter, rows))
+    return np.asarray(told(filter, rows)[3])

@@ -77,8 +77,8 @@ class BicycleKalman(eqx.Module):
     nothing degrades far from home. The first heading is that of the first 2 m of way; after 10 s without a fix that was
     taken in and about where it was expected, or a gap of 2 s in the clock, it starts afresh: unknown meanwhile.
 
-    The errors of a receiver that smooths are correlated over time, which a Kalman filter takes for white: `spread` makes
-    the size of its innovations right, their independence is not.
+    The errors of a receiver that smooths are correlated over time, which a Kalman filter takes for white: `spread`
+    makes the size of its innovations right, their independence is not.
     """
 
     columns: Columns

@@ -10,6 +10,8 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.numerics.moments import Moments, joined, nothing, together
 from sensorfault.types import NEVER, Residual, Score, Trust
 
+WILDEST = 30.0  # standard deviations; what lies farther out counts as so far, lest fourth powers drown the rest
+
 
 class _Window(NamedTuple):
     blocks: Moments  # [block, channel], the newest last
@@ -50,7 +52,7 @@ class Normality(eqx.Module):
         state = self._turned(state, residual.time)
         valid = jnp.stack([residual.valid[c] for c in self.watched])
         e = jnp.stack([residual.value[c] / jnp.sqrt(residual.cov[c, c]) for c in self.watched])
-        e = jnp.where(valid, e, 0.0)
+        e = jnp.where(valid, jnp.clip(e, -WILDEST, WILDEST), 0.0)
         taken = valid & (state.skipped >= self.every - 1)
         # u_t = (w_t - a w_{t-1}) / √(1 - a²)
         u = (e - self.memory * state.last) / jnp.sqrt(1 - self.memory**2)

@@ -10,10 +10,10 @@ from sensorfault.types import Residual, Score, Trust
 class Whitened(eqx.Module):
     """One test a group of channels (a sensor): w = L⁻¹ e with S = L L', S the group's part of `residual.cov`.
 
-    The score is the largest |w_i|, or with `joint` the length of w, which is Mahalanobis' distance: it does not depend
-    on the order of the channels, so it is the one to take for a position. Min et al. 2021, equation (23), leaves the
-    norm open. Channels that are not valid are left out. All valid channels of a group are blamed alike: what is wrong with a
-    position is seldom wrong with its latitude alone.
+    The score is the largest |w_i|, or with `joint` the length of w, Mahalanobis' distance: that does not depend on the
+    order of the channels, so it is the one to take for a position. Min et al. 2021, equation (23), leaves the norm
+    open. Channels that are not valid are left out. All valid channels of a group are blamed alike: what is wrong with
+    a position is seldom wrong with its latitude alone.
     """
 
     groups: tuple[tuple[int, ...], ...] = eqx.field(static=True)
