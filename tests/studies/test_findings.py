@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -252,9 +253,31 @@ def test_real_logs_that_are_not_there_are_one_sentence(tmp_path: Path, monkeypat
 def test_a_study_says_so_before_it_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "road" / "dresden_50hz").mkdir(parents=True)
     monkeypatch.setenv("SENSORFAULT_DATA", str(tmp_path))
-    monkeypatch.setattr(min2021, "import_module", lambda name: pytest.fail(f"{name} was run"))
+    monkeypatch.setattr(min2021, "EXPERIMENTS", {"A1": lambda effort: pytest.fail("it went to work")})
     with pytest.raises(LogError, match="gnss_imu_drive0708"):
         STUDIES["min2021"].run(Effort())
+
+
+def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in min2021.DATA:
+        (tmp_path / folder).mkdir(parents=True)
+    monkeypatch.setenv("SENSORFAULT_DATA", str(tmp_path))
+    told: list[tuple[str, float]] = []
+
+    def experiment(code: str) -> Callable[[Effort], Findings]:
+        def run(effort: Effort) -> Findings:
+            effort.tell("going", 0.5)
+            return Findings((replace(ONE, experiment=code, seeds=effort.seeds),), (Figure("f", "", "", {}),), (code,))
+
+        return run
+
+    assert list(min2021.EXPERIMENTS) == list(STUDIES["min2021"].experiments) == ["A1", "A2", "A3", "A4"]
+    monkeypatch.setattr(min2021, "EXPERIMENTS", {code: experiment(code) for code in ("A1", "A2")})
+    findings = STUDIES["min2021"].run(Effort(7, tell=lambda doing, share: told.append((doing, share))))
+    assert [(row.experiment, row.seeds) for row in findings.rows] == [("A1", 7), ("A2", 7)]
+    assert [figure.name for figure in findings.figures] == ["a1-f", "a2-f"]
+    assert findings.remarks == ("A1", "A2")
+    assert told == [("A1 going", 0.25), ("A2 going", 0.75)]
 
 
 def test_an_experiments_progress_is_a_part_of_the_studys() -> None:
@@ -268,4 +291,6 @@ def test_an_experiments_progress_is_a_part_of_the_studys() -> None:
 
 def test_figures_are_filed_under_their_experiment() -> None:
     figures = tuple(Figure(name, name, "", {}) for name in ("roc", "a2-curve"))
-    assert [figure.name for figure in min2021._filed("A2", Findings((), figures)).figures] == ["a2-roc", "a2-curve"]
+    filed = min2021._filed("A2", Findings((), figures, ("Seen.", "A2: seen.")))
+    assert [figure.name for figure in filed.figures] == ["a2-roc", "a2-curve"]
+    assert filed.remarks == ("A2: Seen.", "A2: seen.")

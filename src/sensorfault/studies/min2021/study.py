@@ -2,14 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
-from importlib.util import find_spec
 
 from sensorfault.studies.data import real
 from sensorfault.studies.findings import Effort, Findings
+from sensorfault.studies.min2021.bias_miss import bias_miss
+from sensorfault.studies.min2021.jams import jams
+from sensorfault.studies.min2021.normality import normality
+from sensorfault.studies.min2021.shorts import shorts
 
 DATA = ("road/dresden_50hz", "road/gnss_imu_drive0708", "road/comma2k19_rav4")
-EXPERIMENTS = {"A1": "shorts", "A2": "jams", "A3": "normality", "A4": "bias_miss"}  # each a file and its function
+EXPERIMENTS: dict[str, Callable[[Effort], Findings]] = {"A1": shorts, "A2": jams, "A3": normality, "A4": bias_miss}
 
 
 def study(effort: Effort) -> Findings:
@@ -20,22 +22,20 @@ def study(effort: Effort) -> Findings:
     """
     for folder in DATA:
         real(folder)
-    here = __package__
-    found = {code: name for code, name in EXPERIMENTS.items() if find_spec(f"{here}.{name}") is not None}
     findings = Findings(())
-    for i, (code, name) in enumerate(found.items()):
-        experiment: Callable[[Effort], Findings] = getattr(import_module(f"{here}.{name}"), name)
-        findings += _filed(code, experiment(replace(effort, tell=_part(effort.tell, code, i, len(found)))))
+    for i, (code, experiment) in enumerate(EXPERIMENTS.items()):
+        findings += _filed(code, experiment(replace(effort, tell=_part(effort.tell, code, i, len(EXPERIMENTS)))))
     return findings
 
 
 def _filed(code: str, findings: Findings) -> Findings:
-    """The names of an experiment's figures begin with its code, which puts them below its tables."""
+    """The names of an experiment's figures begin with its code, which puts them below its tables; its remarks too."""
     figures = (
         figure if figure.name.startswith(code.lower()) else replace(figure, name=f"{code.lower()}-{figure.name}")
         for figure in findings.figures
     )
-    return replace(findings, figures=tuple(figures))
+    remarks = (remark if remark.startswith(code) else f"{code}: {remark}" for remark in findings.remarks)
+    return replace(findings, figures=tuple(figures), remarks=tuple(remarks))
 
 
 def _part(tell: Callable[[str, float], None], code: str, i: int, count: int) -> Callable[[str, float], None]:
