@@ -128,6 +128,21 @@ def test_evaluate_leaves_out_faults_in_the_part_fitted_on(run: Run, drive: Path)
     assert [outcome["fault"]["start_s"] for outcome in json.loads(said.out)["outcomes"]] == [60.0]
 
 
+def test_faults_in_the_training_data_are_named_and_left_out(run: Run, drive: Path, tmp_path: Path) -> None:
+    faults = [
+        word for fault in ("short:gyro.x:20:0:200sigma", "jam:accelerometer.y:30:3") for word in ("--fault", fault)
+    ]
+    assert run("inject", drive, *faults, "--out", "bad.csv").code == 0
+    said = run("fit", "bad.csv", "--until", 60, "--out", "car.sensorfault", "--json", "fit.json")
+    assert said.code == 0, said.err
+    assert (
+        "Left out of the fit, since the training data look faulty there: spike on gyro.x, 0:20.00 to 0:20.00"
+        in said.err
+    )
+    told = json.loads((tmp_path / "fit.json").read_text())["training_suspects"]
+    assert [(one["channel"], one["reason"]) for one in told] == [("gyro.x", "spike"), ("accelerometer.y", "frozen")]
+
+
 def test_the_catalog(run: Run) -> None:
     said = run("methods", "--json", "-")
     assert said.code == 0
