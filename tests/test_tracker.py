@@ -20,7 +20,7 @@ WATCH = Watch(
     period_s=PERIOD_S,
     silent_after_s=3 * PERIOD_S + TICK_S / 2,
     sigma=np.full(4, 0.1),
-    tests=(None, 1),
+    tests=(None, (1,)),
     tick_s=TICK_S,
 )
 START_S = 100.0
@@ -31,8 +31,8 @@ BEFORE_HOLE = 51  # ticks, the last of them with a fix
 class Drive:
     """Ticks of 20 ms, healthy unless told otherwise; every event that ended is in `ended`."""
 
-    def __init__(self) -> None:
-        self.tracker = Tracker(WATCH)
+    def __init__(self, watch: Watch = WATCH) -> None:
+        self.tracker = Tracker(watch)
         self.ended: list[Event] = []
         self.time: float | None = None
         self.heard = np.full(4, -1e12)
@@ -191,6 +191,20 @@ def test_two_channels_of_a_sensor_with_the_same_fault_are_one_event() -> None:
 def test_they_are_one_event_also_while_it_goes_on() -> None:
     (event,) = Drive().run(30, accused={X: 4.0, Y: 4.0}).tracker.open()
     assert (event.sensor, event.channel, event.end_s) == ("gyro", None, None)
+
+
+def test_channels_that_one_test_accuses_are_one_event_of_the_clearest_kind() -> None:
+    """A position is off mostly to the north, and its east a little; the test of both is the third."""
+    fix = replace(
+        WATCH, channel=("latitude", "longitude", "speed", "course"), sensor=("gnss",) * 4, tests=(None, (0, 1))
+    )
+    drive = Drive(fix).run(50)
+    for _ in range(30):
+        drive.run(1, accused={X: 4.0, Y: 0.1})
+    event = drive.quiet().only()
+    assert (event.sensor, event.channel, event.kind) == ("gnss", "latitude, longitude", "bias")
+    apart = Drive(fix).run(50).run(5, accused={X: 4.0}).run(30, accused={X: 4.0, Y: 0.1}).quiet()
+    assert [event.channel for event in apart.ended] == ["latitude", "longitude"]
 
 
 def test_two_channels_with_different_faults_are_two_events() -> None:

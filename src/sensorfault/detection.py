@@ -13,7 +13,7 @@ from sensorfault.logs.table import Log
 class Trace:
     """One test over time: its score and limit, NaN where it had nothing to test.
 
-    `channel` is None for a joint test, "motion" for one of the vehicle's motion.
+    `channel`: a path, several paths for a test that accuses them together, None for one that finds out whom, "motion".
     """
 
     name: str

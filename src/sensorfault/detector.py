@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 from sensorfault.detection import Detection, Trace
 from sensorfault.events import Event
 from sensorfault.logs.table import Log
-from sensorfault.model import MOTION, Model
+from sensorfault.model import MOTION, TOGETHER, Model
 from sensorfault.replay import Progress, Replayed, replay_log
 from sensorfault.run import Now, Stepper
 from sensorfault.tracker import QUIET_S, Tracker, Watch
@@ -108,9 +108,13 @@ def _watch(model: Model) -> Watch:
         model.period_s,
         model.silent_after_s,
         np.asarray(model.sigma),
-        tuple(path if path in (None, MOTION) else paths.index(path) for _, path in model.tests),
+        tuple(_examined(path, paths) for _, path in model.tests),
         model.tick_s,
     )
+
+
+def _examined(path: str | None, paths: list[str]) -> tuple[int, ...] | str | None:
+    return path if path is None or path == MOTION else tuple(paths.index(one) for one in path.split(TOGETHER))
 
 
 def _events(model: Model, log: Log, told: Replayed) -> list[Event]:

@@ -12,6 +12,7 @@ class Event:
 
     `subject`: "sensor", or "motion" when healthy sensors saw a vehicle do what it cannot. `sensor` and `channel` are
     None where the fault could not be laid at one door; `channel` alone, where all of a sensor's channels are faulty.
+    Channels that one test accuses together (latitude and longitude) are named together.
     A miss without a sensor is a gap in the log itself: nothing was recorded.
     `end_s` is None while the fault lasts. `peak_score` and `limit` belong to the test that exceeded its limit most,
     `method` to the recipe that says so; a miss has no score, its peak is the silence and its limit the silence allowed

@@ -41,6 +41,11 @@ class Shape:
             self.rr += residual * residual
             self.tr += t * residual
 
+    @property
+    def size(self) -> float:
+        """Root mean square of the residual [SI]."""
+        return float((self.rr / max(self.n, 1)) ** 0.5)
+
     def kind(self, period_s: float, sigma: float) -> str:
         """short, jam, drift, bias, noise, or unknown where the residual does not tell.
 

@@ -10,6 +10,7 @@ from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.monitor.monitor import Monitor
 
 MOTION = "motion"  # instead of a channel: this test judges how the vehicle moves
+TOGETHER = ", "  # between channels that one test accuses together
 MISSED = 3.0  # a sensor is silent once it has let this many of its periods pass
 
 
@@ -17,9 +18,10 @@ MISSED = 3.0  # a sensor is silent once it has let this many of its periods pass
 class Model:
     """What `fit` makes and `detect` needs.
 
-    `tests` names every test in the order of the monitor's branches, as (statistic, channel path), the path None for a
-    joint test and MOTION for one of the vehicle. `tick_s` is the clock it was fitted on, `sigma` the standard deviation
-    of each channel's healthy residual [SI], `summary` how it was fitted and what that run measured, for people.
+    `tests` names every test in the order of the monitor's branches, as (statistic, channel path): several paths for one
+    that accuses them together, None for one that finds out whom, MOTION for one of the vehicle. `tick_s` is the clock
+    it was fitted on, `sigma` the standard deviation of each channel's healthy residual [SI], `summary` how it was fitted
+    and what that run measured, for people.
     """
 
     method: str

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from sensorfault.events import Event
 from sensorfault.kind import Shape
-from sensorfault.model import MOTION
+from sensorfault.model import MOTION, TOGETHER
 from sensorfault.run import Now
 from sensorfault.types import FAULT
 
@@ -19,9 +19,9 @@ GAP_S = 1.0  # a shorter hole in the log is the recorder's jitter, not a fault
 class Watch:
     """What the tracker must know of a model, channel by channel.
 
-    `tests[k]`: the column of the channel that test k examines alone, None for a joint test, MOTION for one of the
-    vehicle's motion. `tick_s`: the clock; where
-    it stands still for longer than three ticks there is a hole in the log, which is nobody's silence.
+    `tests[k]`: the columns that test k accuses, one or all of them together; None for a test that finds out whom,
+    MOTION for one of the vehicle. `tick_s`: the clock; where it stands still for longer than three ticks there is a hole in
+    the log, which is nobody's silence.
     """
 
     method: str
@@ -30,7 +30,7 @@ class Watch:
     period_s: Float[np.ndarray, " C"]
     silent_after_s: Float[np.ndarray, " C"]
     sigma: Float[np.ndarray, " C"]  # of the healthy residual [SI]
-    tests: tuple[int | str | None, ...]
+    tests: tuple[tuple[int, ...] | str | None, ...]
     tick_s: float
 
     @property
@@ -52,6 +52,33 @@ class _Open:
 _Accused = int | str | None  # a channel, MOTION, or nobody known
 
 
+@dataclass(frozen=True)
+class _Ended:
+    """A fault that is over, or told of while it goes on."""
+
+    accused: _Accused
+    open: _Open
+    event: Event
+
+    @property
+    def column(self) -> int:
+        """The channel accused."""
+        assert isinstance(self.accused, int)
+        return self.accused
+
+    @property
+    def excess(self) -> float:
+        """Score over limit."""
+        return (self.event.peak_score or 0.0) / (self.event.limit or 1.0)
+
+
+def _about(test: tuple[int, ...] | str | None, accused: _Accused) -> bool:
+    """Whether a test of Watch.tests may have accused this one."""
+    if test is None:
+        return accused != MOTION
+    return accused == test if isinstance(test, str) else accused in test
+
+
 class Tracker:
     """Turns one row after the other into events. A healthy row while nothing is open changes nothing."""
 
@@ -63,6 +90,8 @@ class Tracker:
         self._holes: list[tuple[float, float]] = []  # (end, length) of those that may lie in somebody's silence [s]
         sensors = dict.fromkeys(watch.sensor)
         self._of = {s: [c for c, owner in enumerate(watch.sensor) if owner == s] for s in sensors}
+        accused = [test for test in watch.tests if isinstance(test, tuple) and len(test) > 1]
+        self._groups = dict.fromkeys([*(tuple(channels) for channels in self._of.values()), *accused])
 
     def push(self, time: float, gap_s: float, measured: Float[np.ndarray, " C"], now: Now) -> list[Event]:
         """The events that this sample brought to an end.
@@ -75,7 +104,7 @@ class Tracker:
 
     def open(self) -> list[Event]:
         """What is still going on: `end_s` is None."""
-        faults = self._together([(c, self._fault(c, one, None)) for c, one in self._open.items()])
+        faults = self._together([_Ended(c, one, self._fault(c, one, None)) for c, one in self._open.items()])
         silent = [self._miss(name, one, None) for name, one in self._silent.items()]
         return sorted(faults + silent, key=lambda event: event.start_s)
 
@@ -103,24 +132,35 @@ class Tracker:
             if c in accused:
                 one.shape.take(one.since)
                 one.since.clear()
-        return self._together([(c, self._fault(c, one, one.last_s)) for c, one in over.items()])
+        return self._together([_Ended(c, one, self._fault(c, one, one.last_s)) for c, one in over.items()])
 
-    def _together(self, found: list[tuple[_Accused, Event]]) -> list[Event]:
-        """One event for a sensor whose channels all showed the same kind and ended together."""
-        told = [event for _, event in found]
-        for sensor, channels in self._of.items():
-            mine = [event for c, event in found if c in channels]
-            if len(mine) < 2 or len(mine) < len(channels) or len({event.kind for event in mine}) > 1:
-                continue
-            worst = max(mine, key=lambda event: (event.peak_score or 0.0) / (event.limit or 1.0))
-            start_s = min(event.start_s for event in mine)
-            told = [event for event in told if event.sensor != sensor]
-            told.append(replace(worst, start_s=start_s, channel=None))
+    def _together(self, found: list[_Ended]) -> list[Event]:
+        """One event for channels that a test accuses together, and for a sensor of which all showed the same kind."""
+        told = [ended.event for ended in found]
+        for group in self._groups:
+            mine = [ended for ended in found if ended.accused in group]
+            sensor = len(group) == len(self._of[self._watch.sensor[group[0]]])
+            same = sensor and len({ended.event.kind for ended in mine}) == 1
+            alike = group in self._watch.tests and len({(e.event.start_s, e.open.last_s) for e in mine}) == 1
+            if len(mine) == len(group) > 1 and (alike or same):
+                told = [event for event in told if not any(event is ended.event for ended in mine)]
+                told.append(self._one(mine, sensor))
         return told
+
+    def _one(self, mine: list[_Ended], sensor: bool) -> Event:
+        """The event of several channels of one sensor, or of all of it: its kind is that of the clearest."""
+        worst = max(mine, key=lambda ended: ended.excess).event
+        clearest = max(mine, key=lambda ended: ended.open.shape.size / float(self._watch.sigma[ended.column]))
+        return replace(
+            worst,
+            start_s=min(ended.event.start_s for ended in mine),
+            channel=None if sensor else TOGETHER.join(self._watch.channel[ended.column] for ended in mine),
+            kind="jam" if any(ended.event.kind == "jam" for ended in mine) else clearest.event.kind,
+        )
 
     def _peak(self, c: _Accused, one: _Open, now: Now) -> None:
         """The largest excess of a joint test, or of one on this channel; of the motion's own tests if it is that."""
-        mine = np.array([test == c or (test is None and c != MOTION) for test in self._watch.tests])
+        mine = np.array([_about(test, c) for test in self._watch.tests])
         with np.errstate(divide="ignore", invalid="ignore"):
             excess = np.where(mine & (now.score > now.limit), now.score / np.maximum(now.limit, 1e-300), -np.inf)
         k = int(np.argmax(excess))

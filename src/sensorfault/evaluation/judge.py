@@ -9,6 +9,7 @@ from sensorfault.detection import Detection
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
+from sensorfault.model import TOGETHER
 from sensorfault.numerics.poisson import rate_below
 
 GRACE_S = 1.0  # an event that begins so soon after a fault's end is still that fault's
@@ -105,7 +106,8 @@ def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
 
 def _guilty(fault: Fault, event: Event) -> bool:
     """Whether an event accuses the channel that lies."""
-    return event.sensor == fault.sensor and fault.channel in (None, event.channel)
+    accused = [] if event.channel is None else event.channel.split(TOGETHER)
+    return event.sensor == fault.sensor and (fault.channel is None or fault.channel in accused)
 
 
 def _errors(fault: Fault, detection: Detection, clean: Log) -> tuple[float, float]:

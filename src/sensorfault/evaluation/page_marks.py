@@ -12,6 +12,7 @@ from sensorfault.evaluation.page_words import found
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Channel, Log
+from sensorfault.model import TOGETHER
 
 NUMBERED = 100  # events; of more, the numbers would only be a smear
 
@@ -45,7 +46,9 @@ def shades(detection: Detection, concerns: Callable[[Event], bool]) -> list[Mark
 
 def at(event: Event, channel: Channel) -> bool:
     """Whether an event is, or may be, about this channel."""
-    return event.sensor in (None, channel.sensor) and event.channel in (None, channel.name, channel.path)
+    return event.sensor in (None, channel.sensor) and (
+        event.channel is None or channel.name in event.channel.split(TOGETHER)
+    )
 
 
 def injected(detection: Detection, channel: Channel, truth: Sequence[Fault]) -> list[Mark]:

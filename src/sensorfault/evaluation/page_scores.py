@@ -10,6 +10,7 @@ from sensorfault.evaluation.page_figure import Json, Row, packed, stacked
 from sensorfault.evaluation.page_lines import line
 from sensorfault.evaluation.page_marks import at, kept, shades, whole
 from sensorfault.events import Event
+from sensorfault.model import MOTION, TOGETHER
 
 
 def spans_much(score: Float[np.ndarray, " T"]) -> bool:
@@ -19,7 +20,10 @@ def spans_much(score: Float[np.ndarray, " T"]) -> bool:
 
 
 def _concerns(detection: Detection, trace: Trace, event: Event) -> bool:
-    tested = [c for c in detection.log.channels if trace.channel in (None, c.name, c.path)]
+    if MOTION in (trace.channel, event.subject):
+        return trace.channel == event.subject
+    accused = None if trace.channel is None else trace.channel.split(TOGETHER)
+    tested = [c for c in detection.log.channels if accused is None or c.path in accused or c.name in accused]
     return event.sensor is None or any(at(event, channel) for channel in tested)
 
 

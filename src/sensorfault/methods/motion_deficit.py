@@ -1,5 +1,6 @@
 """Does the position go where the velocity says, and the velocity as the inertial unit says."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import equinox as eqx
@@ -9,7 +10,7 @@ from jaxtyping import Array, Bool
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.recipe import Recipe
-from sensorfault.model import Model, hold_s, owners
+from sensorfault.model import TOGETHER, Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
@@ -90,7 +91,7 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         monitor=monitor,
         channels=log.channels,
         sensors=log.sensors,
-        tests=tuple((name, None) for names, _, _ in tests for name in names),
+        tests=tuple(test for names, statistic, _ in tests for test in _named(log, names, statistic)),
         watched=tuple(watched.tolist()),
         tick_s=log.period_s,
         sigma=tuple(_sigma(parts, found, channels).tolist()),
@@ -175,6 +176,14 @@ def _parts(
     speed, course = (_mask(channels, i) if found.polar else whole for i in found.velocity)
     tests.append((("slip along", "slip across"), Of(Slippage(jnp.sqrt(against.variance), speed, course), 1), 0.0))
     return (*parts, against), [place, whole], tests
+
+
+def _named(log: Log, names: tuple[str, ...], of: Of) -> Iterator[tuple[str, str]]:
+    """Each test with the paths of the channels that it accuses."""
+    test = of.statistic
+    masks = [test.along, test.across] if isinstance(test, Slippage) else [test.accused] * len(names)  # type: ignore[attr-defined]
+    for name, mask in zip(names, masks, strict=True):
+        yield name, TOGETHER.join(c.path for c, mine in zip(log.channels, np.asarray(mask), strict=True) if mine)
 
 
 def _mask(channels: int, *columns: int) -> Bool[Array, " C"]:

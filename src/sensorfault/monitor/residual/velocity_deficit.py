@@ -49,7 +49,7 @@ class VelocityDeficit(eqx.Module):
     So slopes and biases, which last, are forgotten, and a receiver that freezes as a whole is seen as far as the car
     turns or changes its speed within that time. Trusted velocities alone lead it; `afresh_s` after the last of them it
     begins anew, and so it does when a velocity moves on that was stuck for longer than HOLD_S and led it meanwhile.
-    Below SLOWEST it is led by the receiver and nothing is compared.
+    Below SLOWEST, and while the inertial unit itself is distrusted, it is led by the receiver and nothing is compared.
     """
 
     memory_s: Float[Array, ""]
@@ -93,10 +93,10 @@ class VelocityDeficit(eqx.Module):
         believed = work.new & jnp.stack([trust.measured[i] for i in self.velocity]).all()
         since = state.time - state.believed
         lost = work.new & (since > self.afresh_s)
-        led = lost | (believed & (work.freed | (jnp.linalg.norm(told) < SLOWEST)))
+        unit = self.inertial.trusted(trust, work.fresh)
+        led = lost | (believed & (work.freed | ~unit | (jnp.linalg.norm(told) < SLOWEST)))
         # v <- v + (1 - exp(-dt / T)) (told - v)
         gain = jnp.where(led, 1.0, jnp.where(believed, 1 - jnp.exp(-jnp.clip(since, 0.0, HOLD_S) / self.memory_s), 0.0))
-        unit = self.inertial.trusted(trust, work.fresh)
         return state._replace(
             rates=jnp.where(unit, work.rates, state.rates),
             velocity=state.velocity + gain * (told - state.velocity),
