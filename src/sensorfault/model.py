@@ -20,8 +20,8 @@ class Model:
 
     `tests` names every test in the order of the monitor's branches, as (statistic, channel path): several paths for one
     that accuses them together, None for one that finds out whom, MOTION for one of the vehicle. `tick_s` is the clock
-    it was fitted on, `sigma` the standard deviation of each channel's healthy residual [SI], `summary` how it was fitted
-    and what that run measured, for people.
+    it was fitted on, `sigma` the standard deviation of each channel's healthy residual [SI], `summary` how it was
+    fitted and what that run measured, for people.
     """
 
     method: str

@@ -20,8 +20,8 @@ class Watch:
     """What the tracker must know of a model, channel by channel.
 
     `tests[k]`: the columns that test k accuses, one or all of them together; None for a test that finds out whom,
-    MOTION for one of the vehicle. `tick_s`: the clock; where it stands still for longer than three ticks there is a hole in
-    the log, which is nobody's silence.
+    MOTION for one of the vehicle. `tick_s`: the clock; where it stands still for longer than three ticks there is a
+    hole in the log, which is nobody's silence.
     """
 
     method: str

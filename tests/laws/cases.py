@@ -12,7 +12,7 @@ import numpy as np
 
 from laws.case import Case
 from laws.guests.zoo import zoo
-from sensorfault.methods import ar_predictor, bp_autoencoder, lstm_predictor, mlp_predictor
+from sensorfault.methods import ar_predictor, bp_autoencoder, lstm_displacement, lstm_predictor, mlp_predictor
 from sensorfault.methods.catalog import METHODS
 from sensorfault.methods.predicted import READMIT_S, REBUILD_S
 from sensorfault.monitor.monitor import Monitor
@@ -37,7 +37,7 @@ def recipes() -> list[Case]:
     lie = 40 * log.value.std(axis=0)
     made = []
     for name, recipe in METHODS.items():
-        if name in (*PREDICTORS, "motion-deficit", "bicycle-kalman"):
+        if name in (*PREDICTORS, "motion-deficit", "bicycle-kalman", "car"):
             continue
         build = SMALL.get(name, recipe.build)
         monitor = build(log.between(end_s=240.0), 0, Session()).monitor
@@ -51,6 +51,7 @@ PLAN = Plan(epochs=3, batch=256)
 SMALL = {"bp-autoencoder": functools.partial(bp_autoencoder.build, plan=Plan(epochs=100, batch=256, rate=0.01))}
 PREDICTORS = {
     "lstm-predictor": functools.partial(lstm_predictor.build, size=lstm_predictor.Size(10, (4, 4), PLAN)),
+    "lstm-displacement": functools.partial(lstm_displacement.build, size=lstm_displacement.Size((4, 4), PLAN)),
     "mlp-predictor": functools.partial(mlp_predictor.build, size=mlp_predictor.Size(10, (8,), PLAN)),
     "ar-predictor": functools.partial(ar_predictor.build, length=10),
     "persistence": METHODS["persistence"].build,
@@ -63,10 +64,10 @@ def predictors() -> list[Case]:
     place that it has never seen.
     """
     log = drive(120.0, seed=3).log.select([*IMU, *POSITION])
-    part = log.between(80.0, 93.0)
+    part = log.between(78.0, 94.0)
     rows = samples(part.time, part.value, part.fresh)
     lie = np.where(np.arange(8) >= 6, 40 * log.value.std(axis=0), 0.0)
-    back_s = REBUILD_S + READMIT_S + 1.0
+    back_s = REBUILD_S + READMIT_S + 2.5
     return [
         Case(name, build(log, 0, Session()).monitor, rows, lie, back_s, named=(6, 7))
         for name, build in PREDICTORS.items()
@@ -87,6 +88,15 @@ def deficit() -> Case:
     back_s = float(monitor.recovery.readmit_s) + 3.0
     rows = samples(part.time, part.value, part.fresh)
     return Case("motion-deficit", monitor, rows, lie, back_s, named=(6, 7, 8, 9), lost=lost)
+
+
+def whole_car() -> Case:
+    """All of it together: who answers for a channel is the part that knows it best."""
+    alone = deficit()
+    log = drive(300.0, seed=3).log.select([*IMU, *POSITION, "gnss.speed", "gnss.course"])
+    monitor = METHODS["car"].build(log.between(end_s=240.0), 0, Session()).monitor
+    lie = np.concatenate([40 * log.value[:, :6].std(axis=0), alone.lie[6:]])
+    return replace(alone, name="car", monitor=monitor, lie=lie, named=None)
 
 
 def bicycle() -> Case:
@@ -138,4 +148,4 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 @functools.cache
 def cases() -> tuple[Case, ...]:
-    return (*zoo(), *recipes(), *predictors(), deficit(), bicycle())
+    return (*zoo(), *recipes(), *predictors(), deficit(), bicycle(), whole_car())

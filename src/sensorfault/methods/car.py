@@ -1,14 +1,14 @@
 """The whole car: for each sensor group the part that does best, under one budget of false alarms."""
 
 from sensorfault.logs.table import Log
-from sensorfault.methods import motion_deficit, relative_conditioning
+from sensorfault.methods import bicycle_kalman, motion_deficit, relative_conditioning
 from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.together import together
 from sensorfault.model import Model
 from sensorfault.training.session import Session
 
 PER_HOUR = 1.0
-PARTS = (relative_conditioning.RECIPE, motion_deficit.RECIPE)
+PARTS = (relative_conditioning.RECIPE, motion_deficit.RECIPE, bicycle_kalman.RECIPE)
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:

@@ -5,16 +5,19 @@ from sensorfault.methods import (
     ar_predictor,
     bicycle_kalman,
     bp_autoencoder,
+    car,
     elm_autoencoder,
     elm_cross_validated,
     elm_robust,
     linear_conditioning,
     linear_extrapolation,
+    lstm_displacement,
     lstm_predictor,
     mlp_predictor,
     motion_deficit,
     pca,
     persistence,
+    relative_conditioning,
 )
 from sensorfault.methods.recipe import Recipe
 
@@ -25,13 +28,16 @@ _RECIPES = (
     bp_autoencoder.RECIPE,
     pca.RECIPE,
     linear_conditioning.RECIPE,
+    relative_conditioning.RECIPE,
     lstm_predictor.RECIPE,
+    lstm_displacement.RECIPE,
     mlp_predictor.RECIPE,
     ar_predictor.RECIPE,
     persistence.RECIPE,
     linear_extrapolation.RECIPE,
     motion_deficit.RECIPE,
     bicycle_kalman.RECIPE,
+    car.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = elm_cross_validated.RECIPE.name

@@ -19,12 +19,12 @@ from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.stage import Stage
-from sensorfault.training.cross_validation import BLOCKS
 from sensorfault.training.limits import tail_limit
 from sensorfault.training.session import Session
 from sensorfault.training.tapes import deaf, score_tape
 
 MOST = 2  # sensors that one sample may exclude
+BLOCKS = 3  # of the log, each scored by parts fitted on the others
 
 
 def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed: int, session: Session) -> Model:
@@ -77,8 +77,9 @@ def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed
 
 
 def _answering(models: Sequence[Model]) -> Bool[np.ndarray, "P C"]:
-    """Which part answers for which channel: of those that watch it the first."""
-    watched = np.array([model.watched for model in models])
+    """Which part answers for which channel: of those that judge it, not the vehicle's motion, the first."""
+    judging = [any(branch.subject == "sensor" for branch in model.monitor.branches) for model in models]
+    watched = np.array([model.watched for model in models]) & np.array(judging)[:, None]
     first: Bool[np.ndarray, "P C"] = watched & (np.cumsum(watched, axis=0) == 1)
     return first
 

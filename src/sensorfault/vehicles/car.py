@@ -53,12 +53,17 @@ class Roles:
 
 
 def roles(log: Log) -> Roles:
-    """The first channel of each name and unit, in the log's order."""
+    """The first channel of each name and unit in the log's order, the receiver's own before others.
+
+    A course and a speed of two sensors would be no velocity: they are new at different times.
+    """
     found: dict[str, int] = {}
     for name, unit in _NAMES.items():
-        for i, channel in enumerate(log.channels):
-            if channel.name in (name, *_ALSO.get(name, ())) and si_unit(channel.unit) == unit:
-                found.setdefault(name, i)
+        all_of = [i for i, c in enumerate(log.channels) if _called(c, name) and si_unit(c.unit) == unit]
+        receiver = log.channels[found["latitude"]].sensor if "latitude" in found else None
+        own = [i for i in all_of if log.channels[i].sensor == receiver]
+        if all_of:
+            found[name] = (own or all_of)[0]
     return Roles(**found, gyro=_axes(log.channels, "rad/s"), accelerometer=_axes(log.channels, "m/s^2"))
 
 
@@ -72,6 +77,10 @@ _NAMES = {
     "steering": "rad",
 }
 _ALSO = {"steering": ("steering_angle", "angle")}
+
+
+def _called(channel: Channel, name: str) -> bool:
+    return channel.name in (name, *_ALSO.get(name, ()))
 
 
 def _axes(channels: tuple[Channel, ...], unit: str) -> tuple[int, int, int] | None:
