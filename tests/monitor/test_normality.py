@@ -54,7 +54,7 @@ def expected(u: np.ndarray, sigma: float = 1.0) -> list[float]:
     return [
         stats.jarque_bera(u).statistic,
         np.sqrt(n) * abs(u.mean()) / sigma,
-        np.sqrt(n / 2) * abs(np.log(variance / sigma**2)),
+        np.sqrt(n / 2) * max(np.log(variance / sigma**2), 0.0),
     ]
 
 
@@ -103,4 +103,4 @@ def test_blind_to_bias_and_scale_but_its_companions_are_not() -> None:
     assert biased[0] == pytest.approx(plain[0], rel=1e-6)
     assert scaled[0] == pytest.approx(plain[0], rel=1e-6)
     assert biased[1] > 20 * plain[1]
-    assert scaled[2] > 3 * plain[2]
+    assert scaled[2] > plain[2] + 10

@@ -103,7 +103,7 @@ def textbook(filter: BicycleKalman, belief, time, value, fresh, polar: bool, ste
     def h(x, u):
         place, motion = ahead(x, -LATE[0], u), ahead(x, -LATE[1], u)
         v = 1.02 * motion[3]
-        moving = [abs(v)] if polar else [v * np.sin(motion[2]), v * np.cos(motion[2])]
+        moving = [v] if polar else [v * np.sin(motion[2]), v * np.cos(motion[2])]
         return np.array([place[0], place[1], *moving])
 
     def slope(f, x):

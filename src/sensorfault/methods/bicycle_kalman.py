@@ -26,7 +26,7 @@ from sensorfault.vehicles.car import roles
 WINDOW_S = 10.0  # of Jarque and Bera's test, as published
 INSTANT_BLOCK_S = 5.0  # one alarm counts once in so long
 PER_HOUR = 1.0  # false alarms: half for the instant tests, half for the windows
-LEAST_Z = 3.3  # no window's mean or variance is judged more sharply than chance alone allows
+LEAST_Z = 4.5  # no mean or variance is judged more sharply than sliding windows of chance alone allow
 
 
 def bicycle_kalman(name: str, log: Log) -> Model:

@@ -77,6 +77,9 @@ class BicycleKalman(eqx.Module):
     nothing degrades far from home. The first heading is that of the first 2 m of way; after 10 s without a fix that was
     taken in and about where it was expected, or a gap of 2 s in the clock, it starts afresh: unknown meanwhile.
 
+    A speed without direction is taken for one ahead: |v| would let the filter start from a light backwards and stay so.
+    A car that backs up under such a speed looks carried until the filter has started afresh.
+
     The errors of a receiver that smooths are correlated over time, which a Kalman filter takes for white: `spread`
     makes the size of its innovations right, their independence is not.
     """
@@ -180,7 +183,7 @@ class BicycleKalman(eqx.Module):
         place, motion = (self.ahead(mean, inputs, -self.late_s[i]) for i in range(2))
         phi, v = motion[2], motion[3]
         v = v * self.speed_scale
-        velocity = (jnp.abs(v),) if len(self.columns.velocity) == 1 else (v * jnp.sin(phi), v * jnp.cos(phi))
+        velocity = (v,) if len(self.columns.velocity) == 1 else (v * jnp.sin(phi), v * jnp.cos(phi))
         return jnp.stack([place[0], place[1], *velocity])
 
     def _residual(self, work: _Work, turned: Float[Array, "M M"], expected: Float[Array, " M"]) -> Residual:

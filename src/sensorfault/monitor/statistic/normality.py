@@ -24,10 +24,11 @@ class _Window(NamedTuple):
 class Normality(eqx.Module):
     """Three tests for each watched channel, on the last `window_s`: is what it says of e / √S normal, centred, as wide?
 
-    JB = n/6 (S² + (K - 3)²/4), Min et al. 2021, equations (24)-(26); √n |mean| / σ; √(n/2) |ln(variance / σ²)|. JB does
-    not change under a constant bias or a scale, so it is never alone. Its quantiles hold for independent samples:
-    healthy innovations are correlated, so each `every`-th sample is taken, less `memory` times the one before (an
-    autoregression of first order). σ is the healthy standard deviation of what is taken.
+    JB = n/6 (S² + (K - 3)²/4), Min et al. 2021, equations (24)-(26); √n |mean| / σ; √(n/2) ln(variance / σ²), where
+    above 0 (a car at rest is measured better than one under way, which is no fault). JB does not change under a
+    constant bias or a scale, so it is never alone. Its quantiles hold for independent samples: healthy innovations are
+    correlated, so each `every`-th sample is taken, less `memory` times the one before (an autoregression of first
+    order). σ is the healthy standard deviation of what is taken.
 
     The window is made of blocks with moments of their own, so a sample costs one block and a sum over blocks, and
     nothing cancels over hours. It takes every valid sample, trusted or not, and is judged once it holds `least`.
@@ -95,7 +96,7 @@ class Normality(eqx.Module):
         # (24) JB = n/6 (S² + (K - 3)²/4)
         normal = n / 6 * (skewness**2 + (kurtosis - 3) ** 2 / 4)
         centred = jnp.sqrt(n) * jnp.abs(window.mean) / self.sigma
-        wide = jnp.sqrt(n / 2) * jnp.abs(jnp.log(spread / self.sigma**2))
+        wide = jnp.sqrt(n / 2) * jnp.maximum(jnp.log(spread / self.sigma**2), 0.0)
         full = valid & (window.n >= self.least) & (variance > 0)
         each = jnp.arange(self.channels)[None] == jnp.asarray(self.watched)[:, None]
         covers = jnp.concatenate([each & full[:, None]] * 3)

@@ -57,7 +57,7 @@ def normality(effort: Effort) -> Findings:
     rows: list[Row] = list(made(effort.seeds))
     drawn = []
     drives = ("dresden_50hz",) if effort.quick else tuple(DRIVES)
-    trials = 5 if effort.quick else 40
+    trials = 5 if effort.quick else 20
     for k, data in enumerate(drives):
         effort.tell(f"A3 {data}", k / len(drives))
         one = judged(data)
@@ -71,7 +71,7 @@ def normality(effort: Effort) -> Findings:
         rivals: list[Model] = []
         if not effort.quick and data != "rav4":
             rivals = [motion_deficit("motion-deficit", one.learn)]
-        rows += motions(one, rivals, 1 if effort.quick else 12)
+        rows += motions(one, rivals, 1 if effort.quick else 6)
     return Findings(tuple(rows), tuple(drawn), REMARKS)
 
 
