@@ -16,7 +16,14 @@ from sensorfault.methods.watch import watchable
 from sensorfault.model import Model
 
 ON_THE_RIG = ("elm-autoencoder", "elm-cross-validated", "elm-robust", "pca", "linear-conditioning")
-OF_THE_POSITION = ("lstm-predictor", "mlp-predictor", "ar-predictor", "persistence", "linear-extrapolation")
+OF_THE_POSITION = (
+    "lstm-predictor",
+    "lstm-displacement",
+    "mlp-predictor",
+    "ar-predictor",
+    "persistence",
+    "linear-extrapolation",
+)
 
 
 def log() -> Log:

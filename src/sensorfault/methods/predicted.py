@@ -14,6 +14,7 @@ from sensorfault.model import MISSED, Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.statistic.norm import Norm
@@ -105,7 +106,7 @@ def from_windows(name: str, log: Log, length: int, fit: Callable[[Windows], Line
         length=length,
         inputs=inputs.columns,
     )
-    return _limited(name, positions, residual, {"inputs": [log.channels[i].path for i in inputs.columns]})
+    return limited(name, positions, residual, {"inputs": [log.channels[i].path for i in inputs.columns]})
 
 
 def from_last(name: str, log: Log, order: int) -> Model:
@@ -122,15 +123,27 @@ def from_last(name: str, log: Log, order: int) -> Model:
         stale_s=jnp.asarray(positions.stale_s),
         order=order,
     )
-    return _limited(name, positions, residual, {})
+    return limited(name, positions, residual, {})
 
 
-def _limited(name: str, positions: Positions, residual: Prediction | Extrapolation, told: dict[str, Any]) -> Model:
-    """The model: covariance and largest error from a replay with the limit off."""
+def limited(
+    name: str,
+    positions: Positions,
+    residual: Prediction | Extrapolation | Displacement,
+    told: dict[str, Any],
+    unit: Float[np.ndarray, "2"] | None = None,
+) -> Model:
+    """The model: covariance and largest error from a replay with the limit off.
+
+    Errors are counted in `unit` [rad], of latitude and longitude; by default in halves of the training range.
+
+    Raises:
+        LogError: too few positions that can be tested.
+    """
     log, columns = positions.log, list(positions.columns)
     channels = len(log.channels)
     scale = np.ones(channels)
-    scale[columns] = positions.half
+    scale[columns] = positions.half if unit is None else unit
     deaf = Monitor(
         residual=residual,
         branches=(Branch(Norm(jnp.asarray(scale)), ScaledMax(jnp.full(1, jnp.inf))),),

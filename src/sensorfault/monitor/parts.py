@@ -9,6 +9,7 @@ from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.prediction import Prediction
@@ -38,7 +39,7 @@ PARTS: dict[str, type[eqx.Module]] = {
     for part in (
         *(Monitor, Branch),
         *(Reconstruction, Conditioning, Several),
-        *(Prediction, Extrapolation),
+        *(Prediction, Extrapolation, Displacement),
         *(MotionDeficit, VelocityDeficit, Inertial),
         *(Dense, Linear, Mlp, Lstm, LstmLayer),
         *(Norm, Mahalanobis, Exchange, Repeats, Of, Relative),
