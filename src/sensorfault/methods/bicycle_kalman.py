@@ -119,7 +119,7 @@ RECIPE = Recipe(
     title="Kalman filter on the kinematic bicycle: largest whitened innovation at once, Jarque-Bera, mean and variance "
     "over 10 s; judges the motion, given healthy sensors",
     source="Min et al. 2021, section 3, equations (16)-(26)",
-    promise="one false alarm an hour, extrapolated from the largest scores of the training drive's blocks, and a quarter on "
-    "top of the windows' limits",
+    promise="one false alarm an hour, extrapolated from the largest scores of the training drive's blocks, and a "
+    "quarter on top of the windows' limits",
     build=_build,
 )
