@@ -2,11 +2,12 @@
 
 import equinox as eqx
 import numpy as np
+from jaxtyping import Float
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.joint import Training, deaf, limited
 from sensorfault.model import Model
-from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.training.conditioning import LAGS, fit_conditioning
 from sensorfault.training.cross_validation import BLOCKS
@@ -25,21 +26,22 @@ def conditioned(name: str, log: Log, lags: int = LAGS, single: bool = True, cros
         LogError: too few complete rows, or nothing to watch.
     """
     training = Training.of(name, log)
-    watched = training.watched
-
-    def fit(without: slice) -> Conditioning:
-        known = training.rows.copy()
-        known[without] = False
-        return fit_conditioning(log.time, log.value, known, watched, lags)
-
-    residual = fit(slice(0))
+    residual = fit_conditioning(log.time, log.value, training.rows, training.watched, lags)
     monitor = deaf(log, residual, Mahalanobis(single), READMIT_S)
     score, runs = score_tape(monitor, log)
     # (10) max(err)
     largest = float(np.nanmax(score))
     if cross_validated:
-        for block in np.array_split(np.arange(len(log)), BLOCKS):
-            out = slice(block[0], block[-1] + 1)
-            other = eqx.tree_at(lambda m: m.residual, monitor, fit(out))
-            largest = max(largest, float(np.nanmax(score_tape(other, log)[0][out])))
+        largest = max(largest, float(np.nanmax(unseen_scores(monitor, training, lags))))
     return limited(name, training, monitor, residual.cov, "mahalanobis", largest, runs)
+
+
+def unseen_scores(deaf: Monitor, training: Training, lags: int = LAGS) -> Float[np.ndarray, "T K"]:
+    """The joint test's score of each block of the log, by weights fitted on the other blocks."""
+    log, unseen = training.log, []
+    for block in np.array_split(np.arange(len(log)), BLOCKS):
+        known = training.rows.copy()
+        known[block] = False
+        other = fit_conditioning(log.time, log.value, known, training.watched, lags)
+        unseen.append(score_tape(eqx.tree_at(lambda m: m.residual, deaf, other), log)[0][block])
+    return np.concatenate(unseen)

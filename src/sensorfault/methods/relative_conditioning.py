@@ -6,7 +6,8 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.conditioned import conditioned
+from sensorfault.methods.conditioned import conditioned, unseen_scores
+from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.statistic.relative import Relative
@@ -27,7 +28,8 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     lowest, highest = roughness(score_tape(deaf(model.monitor), log)[0], memory)
     relative = Relative(joint.statistic, jnp.asarray(memory), jnp.asarray(lowest), jnp.asarray(highest))
     monitor = eqx.tree_at(lambda m: m.branches[0], model.monitor, replace(joint, statistic=relative))
-    limit = tail_limit(score_tape(deaf(monitor), log)[0], log.period_s, PER_HOUR)
+    session.tell("scoring blocks left out of the fit")
+    limit = tail_limit(unseen_scores(deaf(monitor), Training.of(RECIPE.name, log)), log.period_s, PER_HOUR)
     monitor = eqx.tree_at(lambda m: m.branches[0].threshold, monitor, Fixed(jnp.asarray(limit)))
     return replace(model, monitor=monitor, tests=(("mahalanobis, relative", None), *model.tests[1:]))
 
@@ -36,6 +38,6 @@ RECIPE = Recipe(
     name="relative-conditioning",
     title="Newest row given the four before it, against the roughness of the last half second",
     source="conditional mean of a Gaussian vector; the limit a tail of block maxima (Hosking & Wallis 1987)",
-    promise="one false alarm an hour, extrapolated from the training data",
+    promise="one false alarm an hour, extrapolated from the scores of blocks left out of the fit",
     build=_build,
 )

@@ -24,35 +24,32 @@ from sensorfault.training.session import Session
 from sensorfault.training.tapes import deaf, score_tape
 
 MOST = 2  # sensors that one sample may exclude
-BLOCKS = 3  # of the log, each scored by parts fitted on the others
 
 
 def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed: int, session: Session) -> Model:
     """Every part that the log allows, each answering for the channels it watches, the first of several before others.
 
-    The parts' limits are calibrated anew: each branch has an equal share of `per_hour` false alarms, extrapolated from
-    scores on blocks of the log that the part was not fitted on, and stays above the part's own limit. Tests of exact
+    Each part comes with limits that promise `per_hour` false alarms if it is alone. Here each of its tests has an equal
+    share of that, so its limit is raised by what the share costs in the tail of its scores on this log. Tests of exact
     repeats keep their own limits, which promise far less. What a part said why it cannot run is in `summary["cannot"]`.
 
     Raises:
         LogError: no part can be fitted on this log.
     """
-    fitted: list[tuple[Recipe, Model]] = []
+    models: list[Model] = []
     cannot: dict[str, str] = {}
     for recipe in parts:
         session.tell(f"fitting {recipe.name}")
         try:
             model = recipe.build(log, seed, session)
             cannot |= model.summary.get("cannot", {})
-            fitted.append((recipe, model))
+            models.append(model)
         except LogError as error:
             cannot[recipe.name] = str(error)
-    if not fitted:
+    if not models:
         raise LogError(" ".join(cannot.values()))
-    models = [model for _, model in fitted]
-    session.tell("calibrating the limits")
-    tapes = _unseen_scores(log, fitted, seed, session)
-    limits = _limits(models, tapes, log.period_s, per_hour)
+    session.tell("sharing out the false alarms")
+    limits = _limits(models, log, per_hour)
     first = _answering(models)
     of = np.argmax(first, axis=0)  # the part that answers for each channel
     sigma = tuple(models[p].sigma[c] for c, p in enumerate(of))
@@ -67,7 +64,7 @@ def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": reasons,
-        "parts": [recipe.name for recipe, _ in fitted],
+        "parts": [model.method for model in models],
         "cannot": cannot,
         "promised_per_hour": per_hour,
     }
@@ -110,45 +107,21 @@ def _joined(log: Log, models: Sequence[Model], limits: Sequence[Stage[Any, Any, 
     )
 
 
-def _unseen_scores(
-    log: Log, fitted: Sequence[tuple[Recipe, Model]], seed: int, session: Session
-) -> tuple[Float[np.ndarray, "T K"], ...]:
-    """The scores of every branch on blocks that its part was not fitted on, limits off."""
-    blocks = np.array_split(np.arange(len(log)), BLOCKS)
-    told = []
-    for n, block in enumerate(blocks):
-        session.tell(f"calibrating the limits, block {n + 1} of {BLOCKS}")
-        rest = log.without(block)
-        models = [_refitted(rest, recipe, model, seed) for recipe, model in fitted]
-        monitor = deaf(_joined(log, models, [branch.threshold for m in models for branch in m.monitor.branches]))
-        told.append([score[block] for score in score_tape(monitor, log)])
-    return tuple(np.concatenate(scores) for scores in zip(*told, strict=True))
-
-
-def _refitted(rest: Log, recipe: Recipe, model: Model, seed: int) -> Model:
-    """The part fitted on the rest of the log; on the whole, where the rest alone does not do."""
-    try:
-        return recipe.build(rest, seed, Session())
-    except LogError:
-        return model
-
-
-def _limits(
-    models: Sequence[Model], tapes: Sequence[Float[np.ndarray, "T K"]], period_s: float, per_hour: float
-) -> list[Stage[Any, Any, Any, Any]]:
-    """An equal share of the budget for each branch, and of that for each of its tests; exact repeats keep theirs."""
-    branches = [branch for model in models for branch in model.monitor.branches]
-    sharing = sum(not branch.certain for branch in branches)
+def _limits(models: Sequence[Model], log: Log, per_hour: float) -> list[Stage[Any, Any, Any, Any]]:
+    """Each part's own limit, raised by what the smaller share costs; exact repeats keep theirs."""
+    owns = [branch.threshold for model in models for branch in model.monitor.branches]
+    certain = [branch.certain for model in models for branch in model.monitor.branches]
     limits: list[Stage[Any, Any, Any, Any]] = []
-    for branch, tape in zip(branches, tapes, strict=True):
-        share = per_hour / (sharing * tape.shape[1])
-        limit = np.maximum(_own(branch.threshold), tail_limit(tape, period_s, share))
-        limits.append(branch.threshold if branch.certain else Fixed(jnp.asarray(limit)))
+    for own, sure, tape in zip(owns, certain, score_tape(deaf(_joined(log, models, owns)), log), strict=True):
+        share = per_hour / (tape.shape[1] * (len(certain) - sum(certain)))
+        alone, shared = (tail_limit(tape, log.period_s, rate) for rate in (per_hour, share))
+        dearer = np.where((alone > 0) & np.isfinite(shared), shared / np.where(alone > 0, alone, 1.0), 1.0)
+        limits.append(own if sure else Fixed(jnp.asarray(_fixed(own) * dearer)))
     return limits
 
 
-def _own(threshold: Stage[Any, Any, Any, Any]) -> Float[np.ndarray, " K"]:
-    """The fixed limit that a part came with, below which it does not alarm here either."""
+def _fixed(threshold: Stage[Any, Any, Any, Any]) -> Float[np.ndarray, " K"]:
+    """The fixed limit that a part came with."""
     if isinstance(threshold, ScaledMax):
         return np.asarray(threshold.fixed_point())
     assert isinstance(threshold, Fixed)
