@@ -40,7 +40,7 @@ def default() -> Model:
 
 
 def test_the_catalog() -> None:
-    assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, "bp-autoencoder", "motion-deficit"}
+    assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, "bp-autoencoder", "motion-deficit", "bicycle-kalman"}
     assert DEFAULT == "elm-cross-validated"
     for name, recipe in METHODS.items():
         assert recipe.name == name

@@ -65,7 +65,7 @@ def _check(log: Log, found: Roles) -> None:
             f"{log.name} has no {lacking[0]}, which the bicycle model needs; name the columns in vehicle.toml."
         )
     times = moving(log, found) if found.velocity else _fast(log, found)
-    seconds = len(times) * _period(log, found)
+    seconds = len(times) * float(np.median(np.diff(times))) if len(times) > 2 else 0.0
     if seconds < LEAST_MOVING_S:
         raise LogError(
             f"{log.name} moves faster than 2 m/s for {seconds:.0f} s, the bicycle model needs {LEAST_MOVING_S:g} s; "
@@ -79,16 +79,16 @@ def _fast(log: Log, found: Roles) -> Float[np.ndarray, " N"]:
     return times
 
 
-def _velocity(found: Roles) -> tuple[int, ...]:
+def _velocity(log: Log, found: Roles) -> tuple[int, ...]:
+    """Columns of north and east, else of one speed: the wheels', where another sensor than the receiver tells it."""
     if found.north is not None and found.east is not None:
         return found.north, found.east
     assert found.speed is not None
-    return (found.speed,)
-
-
-def _period(log: Log, found: Roles) -> float:
-    """Usual time between two velocities [s]."""
-    return float(np.median(np.diff(log.time[log.fresh[:, _velocity(found)[0]]])))
+    assert found.position is not None
+    receiver = log.channels[found.position[0]].sensor
+    own = [i for i, c in enumerate(log.channels) if c.name == "speed" and c.unit == "m/s" and c.sensor != receiver]
+    often = [i for i in own if log.fresh[:, i].sum() > log.fresh[:, found.speed].sum()]
+    return (often[0] if often else found.speed,)
 
 
 def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: float | None) -> BicycleKalman:
@@ -112,7 +112,7 @@ def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: fl
     if found.steering is not None and wheelbase_m is not None:
         gain, lean = steering(log, found, wheelbase_m)
         turning = np.array([np.copysign(1 / steering_ratio, gain) if steering_ratio else gain])
-    velocity = _velocity(found)
+    velocity = _velocity(log, found)
     return BicycleKalman(
         columns=Columns(
             position=found.position,
