@@ -115,7 +115,8 @@ def _limits(models: Sequence[Model], log: Log, per_hour: float) -> list[Stage[An
     for own, sure, tape in zip(owns, certain, score_tape(deaf(_joined(log, models, owns)), log), strict=True):
         share = per_hour / (tape.shape[1] * (len(certain) - sum(certain)))
         alone, shared = (tail_limit(tape, log.period_s, rate) for rate in (per_hour, share))
-        dearer = np.where((alone > 0) & np.isfinite(shared), shared / np.where(alone > 0, alone, 1.0), 1.0)
+        scaled = (alone > 0) & np.isfinite(shared)
+        dearer = np.divide(shared, alone, out=np.ones_like(alone), where=scaled)
         limits.append(own if sure else Fixed(jnp.asarray(_fixed(own) * dearer)))
     return limits
 

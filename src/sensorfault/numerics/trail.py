@@ -38,10 +38,8 @@ class Trail(NamedTuple):
     def kept(self, still: Bool[Array, ""]) -> "Trail":
         """The same trail, or no place at all. What is not there stays at zero, so that nothing grows for ever."""
         there = self.there & still
-        return Trail(
-            *(jnp.where(there if x.ndim == 1 else there[:, None], x, 0.0) for x in self[:-1]),
-            there=there,
-        )
+        fields = [jnp.where(there if x.ndim == 1 else there[:, None], x, 0.0) for x in self[:-1]]
+        return Trail(*[*fields, there])
 
     def put(
         self,
@@ -70,6 +68,5 @@ class Trail(NamedTuple):
 
     def pick(self, one: Bool[Array, " K"]) -> "Trail":
         """That place: its fields without the leading axis, zeros if the mask is empty."""
-        return Trail(
-            *(jnp.where(one if x.ndim == 1 else one[:, None], x, 0.0).sum(axis=0) for x in self[:-1]), there=one.any()
-        )
+        fields = [jnp.where(one if x.ndim == 1 else one[:, None], x, 0.0).sum(axis=0) for x in self[:-1]]
+        return Trail(*[*fields, one.any()])

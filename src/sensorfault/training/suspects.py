@@ -63,7 +63,7 @@ Span = tuple[int, tuple[int, int], str]  # column, rows [first, end) of the comp
 
 
 def _spans(log: Log, columns: list[int], rows: Int[np.ndarray, " N"]) -> list[Span]:
-    x, time = log.value[np.ix_(rows, columns)], log.time[rows]
+    x, time = log.value[rows][:, columns], log.time[rows]
     period = float(np.median(np.diff(time)))
     step = np.diff(x, axis=0)
     sensors = np.array([log.channels[i].sensor for i in columns])
@@ -106,7 +106,9 @@ def _usual(size: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
     parts = np.array_split(size, blocks)
     median = np.array([np.median(part, axis=0) for part in parts])
     after, before = np.vstack([median[1:], median[-1:]]), np.vstack([median[:1], median[:-1]])
-    return np.repeat(np.maximum.reduce([median, after, before]), [len(part) for part in parts], axis=0)
+    largest = np.maximum.reduce([median, after, before])
+    usual: Float[np.ndarray, "N C"] = np.repeat(largest, [len(part) for part in parts], axis=0)
+    return usual
 
 
 def _offsets(

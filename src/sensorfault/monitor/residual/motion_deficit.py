@@ -114,7 +114,8 @@ class MotionDeficit(eqx.Module):
 
         here = _mended(work, new)
         length = jnp.where(lasting, jnp.maximum(jnp.linalg.norm(step) + jnp.where(new, longer, 0.0), 0.0), 0.0)
-        deficits = Deficits(*self._deficits(here, place, fix, jnp.where(new, 0.0, since)), fix, length, lasting)
+        over = self._deficits(here, place, fix, jnp.where(new, 0.0, since))
+        deficits = Deficits(*[*over, fix, length, lasting])
         return self._residual(sample, here.trail, deficits), work
 
     def update(self, work: _Work, trust: Trust) -> _State:
