@@ -10,7 +10,7 @@ demo: .venv/.installed        ## simulate a drive, let its sensors lie, find out
 	$(BIN)/sensorfault demo --out demo
 
 test: .venv/.dev              ## all tests that need nothing but this repository
-	$(BIN)/python -m pytest -n 2 -m "not real" --jaxtyping-packages="$(SHAPES)"
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not real" --jaxtyping-packages="$(SHAPES)"
 
 check: .venv/.dev             ## lint, types, import contract
 	$(BIN)/ruff check

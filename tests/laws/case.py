@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import jax
 import numpy as np
 
 from sensorfault.monitor.monitor import Monitor, MonitorState
@@ -34,6 +35,11 @@ class Case:
     named: tuple[int, ...] | None = None  # channels that a fault is laid on; all by default
     lost: dict[int, tuple[int, ...]] = field(default_factory=dict)  # who cannot be judged while a channel is silent
     rate: float | None = None  # ... and the rate of them that each channel was designed for
+
+    @property
+    def block(self) -> bool:
+        """Whether its samples carry a private block."""
+        return bool(jax.tree.leaves(self.rows.block))
 
     @property
     def accused(self) -> tuple[int, ...]:

@@ -1,7 +1,7 @@
 """All that must obey the laws: the toy guests, and the catalog.
 
-To put a recipe under the laws, let `recipes` give a Case for it: a monitor fitted on one log, and a few hundred samples
-of another one.
+A recipe that judges whole samples of the inertial unit is under the laws by being in the catalog. Any other needs a
+Case in ALONE: a monitor fitted on one log, and a few hundred samples of another one.
 """
 
 import functools
@@ -29,21 +29,17 @@ UNDER_WAY = 262.0, 282.0  # [s] of the drive: at 7 to 13 m/s
 IMU = [f"{sensor}.{axis}" for sensor in ("gyro", "accelerometer") for axis in "xyz"]
 
 
-def recipes() -> list[Case]:
-    """Each recipe of the catalog, fitted on four minutes of a simulated drive, before eight seconds of the fifth."""
+def joint(name: str) -> Case:
+    """A recipe that judges whole samples of the inertial unit, fitted on four minutes of a simulated drive, before
+    eight seconds of the fifth.
+    """
     log = drive(300.0, seed=3).log.select(IMU)
     unseen = log.between(280.0, 288.0)
     rows = samples(unseen.time, unseen.value, unseen.fresh)
     lie = 40 * log.value.std(axis=0)
-    made = []
-    for name, recipe in METHODS.items():
-        if name in (*PREDICTORS, "motion-deficit", "bicycle-kalman", "car"):
-            continue
-        build = SMALL.get(name, recipe.build)
-        monitor = build(log.between(end_s=240.0), 0, Session()).monitor
-        permuted = functools.partial(_permuted, monitor)
-        made.append(Case(name, monitor, rows, lie, float(monitor.recovery.readmit_s), permuted=permuted))
-    return made
+    monitor = SMALL.get(name, METHODS[name].build)(log.between(end_s=240.0), 0, Session()).monitor
+    back_s = float(monitor.recovery.readmit_s)
+    return Case(name, monitor, rows, lie, back_s, permuted=functools.partial(_permuted, monitor))
 
 
 BACK_S = 3.0  # the bicycle's filter begins anew
@@ -59,20 +55,17 @@ PREDICTORS = {
 }
 
 
-def predictors() -> list[Case]:
-    """Each predictor of the position, small and hardly trained, on a part of its own drive, since a network knows no
-    place that it has never seen.
+def predictor(name: str) -> Case:
+    """A predictor of the position, small and hardly trained, on a part of its own drive, since a network knows no place
+    that it has never seen.
     """
     log = drive(120.0, seed=3).log.select([*IMU, *POSITION])
     part = log.between(78.0, 94.0)
     rows = samples(part.time, part.value, part.fresh)
     lie = np.where(np.arange(8) >= 6, 40 * log.value.std(axis=0), 0.0)
     back_s = REBUILD_S + READMIT_S + 2.5
-    lost = {"lstm-displacement": {6: (7,), 7: (6,)}}  # half a position is none
-    return [
-        Case(name, build(log, 0, Session()).monitor, rows, lie, back_s, named=(6, 7), lost=lost.get(name, {}))
-        for name, build in PREDICTORS.items()
-    ]
+    lost = {6: (7,), 7: (6,)} if name == "lstm-displacement" else {}  # half a position is none
+    return Case(name, PREDICTORS[name](log, 0, Session()).monitor, rows, lie, back_s, named=(6, 7), lost=lost)
 
 
 def deficit() -> Case:
@@ -147,6 +140,23 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
     )
 
 
+ZOO = {case.name: case for case in zoo()}
+ALONE = {"motion-deficit": deficit, "bicycle-kalman": bicycle, "car": whole_car}
+JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
+NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
+
+
 @functools.cache
-def cases() -> tuple[Case, ...]:
-    return (*zoo(), *recipes(), *predictors(), deficit(), bicycle(), whole_car())
+def built(name: str) -> Case:
+    """The case of that name, fitted when a law first asks for it."""
+    if name in ZOO:
+        return ZOO[name]
+    if name in ALONE:
+        return ALONE[name]()
+    return predictor(name) if name in PREDICTORS else joint(name)
+
+
+def names_with(field: str) -> tuple[str, ...]:
+    """Those of the guests whose case has this field, and for `permuted` the joint recipes."""
+    have = tuple(name for name, case in ZOO.items() if getattr(case, field))
+    return (*have, *JOINT) if field == "permuted" else have

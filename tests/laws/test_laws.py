@@ -1,7 +1,6 @@
 """The laws of ARCHITECTURE.md, over every guest and every recipe: see cases.py."""
 
 import functools
-from collections.abc import Callable
 
 import equinox as eqx
 import jax
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from laws.case import Case
-from laws.cases import cases
+from laws.cases import NAMES, names_with
 from laws.compilations import compilations
 from laws.damage import absent, alone, half, holed, lied, silenced, telling, troubled
 from laws.walk import Walk, assert_close, assert_same, finite, walk
@@ -19,11 +18,14 @@ from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.run import Now, Stepper, fleet
 from sensorfault.types import FAULT, OK, UNKNOWN, Report, Sample
 
-every_case = pytest.mark.parametrize("case", cases(), ids=str)
+
+def on(*names: str) -> pytest.MarkDecorator:
+    """The law for these cases, all laws of one case in one process, which then fits and compiles it once."""
+    marked = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in names]
+    return pytest.mark.parametrize("case", marked, indirect=True)
 
 
-def cases_with(field: Callable[[Case], object]) -> pytest.MarkDecorator:
-    return pytest.mark.parametrize("case", [case for case in cases() if field(case)], ids=str)
+every_case = on(*NAMES)
 
 
 @functools.cache
@@ -193,7 +195,7 @@ def test_an_empty_sample_is_unknown(case: Case) -> None:
     assert (told.sample[long][late] == UNKNOWN).all()
 
 
-@cases_with(lambda case: jax.tree.leaves(case.rows.block))
+@on(*names_with("block"))
 def test_a_hole_in_the_block_costs_one_sample(case: Case) -> None:
     k = telling(case)
     told, clean = walk(case.monitor, holed(case.rows, k)), healthy(case)
@@ -206,7 +208,7 @@ def test_a_hole_in_the_block_costs_one_sample(case: Case) -> None:
 # 5. Channels have no order, vehicles have no neighbours.
 
 
-@cases_with(lambda case: case.permuted)
+@on(*names_with("permuted"))
 def test_permuted_channels_permute_the_verdicts(case: Case) -> None:
     assert case.permuted
     order = np.roll(np.arange(case.channels), 1)
@@ -220,10 +222,17 @@ def test_permuted_channels_permute_the_verdicts(case: Case) -> None:
     assert_close(other.reports.residual.value, told.reports.residual.value[:, order], 1e-8)
 
 
-@pytest.mark.parametrize(
-    ("case", "vehicles"), [*((case, 3) for case in cases()), *((case, 1) for case in cases()[2:3])], ids=str
-)
-def test_a_fleet_is_its_vehicles(case: Case, vehicles: int) -> None:
+@every_case
+def test_a_fleet_is_its_vehicles(case: Case) -> None:
+    assert_fleet(case, 3)
+
+
+@on("pairs")
+def test_a_fleet_of_one_is_one(case: Case) -> None:
+    assert_fleet(case, 1)
+
+
+def assert_fleet(case: Case, vehicles: int) -> None:
     logs = [troubled(case), case.rows, lied(case.rows, slice(half(case.rows), None), alone(case, 0))][:vehicles]
 
     @jax.jit
@@ -305,7 +314,7 @@ def test_back_after_a_long_fault(case: Case) -> None:
 # 9. False alarms come as often as designed.
 
 
-@cases_with(lambda case: case.rate)
+@on(*names_with("rate"))
 def test_false_alarms_come_at_the_designed_rate(case: Case) -> None:
     assert case.rate
     assert case.quiet

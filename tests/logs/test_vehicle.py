@@ -59,9 +59,9 @@ def vehicles(draw: st.DrawFn) -> VehicleFile:
     )
     sensors = draw(st.lists(sensor, min_size=1, max_size=3, unique_by=lambda sensor: sensor.name))
     zero = st.none() | finite
-    return VehicleFile(
-        draw(names), tuple(files), tuple(sensors), draw(zero), draw(zero), tuple(draw(st.lists(reasons)))
-    )
+    size = st.none() | st.floats(1e-3, 1e3)
+    numbers = [draw(zero), draw(zero), draw(size), draw(size)]
+    return VehicleFile(draw(names), tuple(files), tuple(sensors), *numbers, notes=tuple(draw(st.lists(reasons))))
 
 
 @settings(max_examples=100, deadline=None)

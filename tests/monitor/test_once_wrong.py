@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from laws.cases import cases
+from laws.cases import ZOO
 from laws.compilations import compilations
 from laws.walk import walk as plain_walk
 from monitor.scripted import FromBlock, Says, branch, each, says, script, walk
@@ -19,7 +19,7 @@ from sensorfault.run import Stepper
 from sensorfault.types import FAULT, OK, UNKNOWN
 
 
-@pytest.mark.parametrize("case", cases(), ids=str)
+@pytest.mark.parametrize("case", ZOO.values(), ids=str)
 def test_a_continued_replay_is_not_compiled_again(case):
     """Once: jnp.full(n, NEVER) is weakly typed: the state after a log has another type than the one before it."""
     end = jax.tree.map(lambda x: x[-1], plain_walk(case.monitor, case.rows).states)
@@ -145,7 +145,7 @@ def test_a_block_of_one_type_that_is_not_float(block):
 
 def test_a_forgotten_block_is_not_the_last_one():
     """Once: push without a block silently takes the one before (at first: ones)."""
-    case = cases()[4]
+    case = ZOO["block"]
     with jax.numpy_dtype_promotion("standard"):
         stepper = Stepper(case.monitor, jax.tree.map(lambda x: x[0], case.rows.block))
         with pytest.raises((TypeError, ValueError)):
@@ -155,7 +155,7 @@ def test_a_forgotten_block_is_not_the_last_one():
 def test_an_empty_block_is_no_block():
     """Once: push(block=()) raised 'need at least one array', though () is what 'no block' is elsewhere."""
     with jax.numpy_dtype_promotion("standard"):
-        stepper = Stepper(cases()[0].monitor)
+        stepper = Stepper(ZOO["kalman"].monitor)
         said, same = (stepper.push(t, [1.0, 1.0, 1.0], True, *block) for t, block in ((0.0, ()), (0.1, ((),))))
         assert len(said.channel) == len(same.channel) == 3
 
@@ -163,7 +163,7 @@ def test_an_empty_block_is_no_block():
 def test_too_few_values_are_refused():
     """Once: one number is broadcast over all channels."""
     with jax.numpy_dtype_promotion("standard"):
-        stepper = Stepper(cases()[0].monitor)
+        stepper = Stepper(ZOO["kalman"].monitor)
         for value in (1.0, [1.0]):
             with pytest.raises(ValueError):
                 stepper.push(0.0, value)

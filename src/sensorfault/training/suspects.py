@@ -89,7 +89,7 @@ def isolation(step: Float[np.ndarray, "N C"], sensors: np.ndarray) -> Float[np.n
     usual = _usual(size)
     overall = np.median(size, axis=0)
     noisy = size / np.maximum(usual, np.where(overall > 0, overall, np.inf) / 2)
-    alone = noisy.copy()
+    alone: Float[np.ndarray, "N C"] = noisy.copy()
     for sensor in dict.fromkeys(sensors):
         own = sensors == sensor
         if own.all():

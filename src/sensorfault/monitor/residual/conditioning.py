@@ -78,5 +78,7 @@ class Conditioning(eqx.Module):
         away = time - seen
         anew = trust.measured & ((away > (self.lags + 0.5) * self.tick_s) | (away < 0))
         newest = jnp.where(trust.measured, bounded, jnp.where(trust.filled, trust.value, rows[0]))
-        shifted = jnp.concatenate([newest[None], rows[:-1]])
-        return _Window(jnp.where(anew[None], value[None], shifted), jnp.where(trust.measured, time, seen))
+        shifted = jnp.where(self.watched[None], jnp.concatenate([newest[None], rows[:-1]]), rows)
+        return _Window(
+            jnp.where((anew & self.watched)[None], value[None], shifted), jnp.where(trust.measured, time, seen)
+        )

@@ -1,4 +1,6 @@
-"""Experiment A4: offsets, jams, spikes and silences in a whole car, watched by one recipe under one promise."""
+"""Experiment A4: offsets and silences in a whole car, watched by one recipe under one promise; beside them spikes and
+frozen channels of the inertial unit (frozen positions are experiment A2).
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -92,7 +94,6 @@ def _wanted(log: Log, quick: bool) -> Iterator[Fault]:
     receiver = log.channels[log.index("latitude")].sensor
     for metres in METRES[-1:] if quick else METRES:
         yield from 4 * [Fault("bias", receiver, None, 0.0, BIAS_S, metres)]
-    yield from 4 * [Fault("jam", receiver, None, 0.0, JAM_S)]
     for sensor in log.sensors:
         heard = (silence_s for silence_s in SILENCES_S if silence_s > MISSED * sensor.period_s)
         yield from (Fault("miss", sensor.name, None, 0.0, silence_s, silence_s) for silence_s in heard)
@@ -112,11 +113,9 @@ def _batches(wanted: Sequence[Fault], room_s: float) -> Iterator[list[Fault]]:
 
 
 def _parts(fault: Fault, log: Log, seed: int) -> list[Fault]:
-    """A fault of the whole receiver is one of its position: latitude and longitude, the offset in metres one way."""
+    """An offset of the whole receiver is one of its position: latitude and longitude, so many metres one way."""
     if fault.channel is not None or fault.kind == "miss":
         return [fault]
-    if fault.kind == "jam":
-        return [replace(fault, channel=name) for name in ("latitude", "longitude")]
     latitude = float(np.nanmedian(log.value[:, log.index("latitude")]))
     way = np.random.default_rng([seed, round(1000 * fault.start_s)]).uniform(0, 2 * np.pi)
     north = fault.magnitude * np.cos(way) / float(meridian_radius(latitude))
