@@ -10,7 +10,7 @@ demo: .venv/.installed        ## simulate a drive, let its sensors lie, find out
 	$(BIN)/sensorfault demo --out demo
 
 test: .venv/.dev              ## all tests that need nothing but this repository
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not real" --jaxtyping-packages="$(SHAPES)"
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not real" --jaxtyping-packages="$(SHAPES)"
 
 check: .venv/.dev             ## lint, types, import contract
 	$(BIN)/ruff check
@@ -19,7 +19,7 @@ check: .venv/.dev             ## lint, types, import contract
 	$(BIN)/lint-imports --no-cache
 
 real: .venv/.dev              ## the tests on the real logs in SENSORFAULT_DATA
-	$(BIN)/python -m pytest -n 2 -m real
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m real
 
 bench: .venv/.bench           ## ratios against peers, each within one run
 	missed=0; for file in benchmarks/bench_*.py; do $(BIN)/python $$file || missed=1; done; exit $$missed

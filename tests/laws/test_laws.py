@@ -20,9 +20,8 @@ from sensorfault.types import FAULT, OK, UNKNOWN, Report, Sample
 
 
 def on(*names: str) -> pytest.MarkDecorator:
-    """The law for these cases, all laws of one case in one process, which then fits and compiles it once."""
-    marked = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in names]
-    return pytest.mark.parametrize("case", marked, indirect=True)
+    """The law for these cases."""
+    return pytest.mark.parametrize("case", names, indirect=True)
 
 
 every_case = on(*NAMES)
