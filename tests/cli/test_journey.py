@@ -34,7 +34,7 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
     assert said.code == 0, said.err
     assert "False alarms: 0 in the 18 s held out" in said.err
     told = json.loads((tmp_path / "fit.json").read_text())
-    assert told["method"] == "elm-cross-validated"
+    assert told["method"] == "relative-conditioning"
     assert told["alarms_per_hour"] == 0
     assert len(told["watched"]) == 6
 
@@ -85,7 +85,7 @@ def test_detect_without_a_model_says_what_that_means(run: Run, drive: Path) -> N
     said = run("detect", drive, "--json", "-")
     assert said.code == 0, said.err
     assert (
-        "No model was given: elm-cross-validated was fitted on the log's own beginning, 0:00.00 to 0:39.99" in said.err
+        "No model was given: relative-conditioning was fitted on the log's own beginning, 0:00.00 to 0:39.99" in said.err
     )
     assert "taken as healthy" in said.err
     assert "the false-alarm rate is not known" in said.err

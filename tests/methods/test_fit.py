@@ -42,7 +42,7 @@ def default() -> Model:
 
 def test_the_catalog() -> None:
     assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, "bp-autoencoder", "motion-deficit", "bicycle-kalman", "car"}
-    assert DEFAULT == "elm-cross-validated"
+    assert DEFAULT == "relative-conditioning"
     for name, recipe in METHODS.items():
         assert recipe.name == name
         assert recipe.title
@@ -115,9 +115,9 @@ def test_every_method_finds_a_plain_fault_and_keeps_quiet_without(method: str) -
 def test_progress_is_told_in_words() -> None:
     told: list[str] = []
     fit(log(), progress=told.append)
-    assert len(told) == 2
+    assert len(told) == 3
     assert DEFAULT in told[0]
-    assert "held out" in told[1]
+    assert "held out" in told[-1]
 
 
 def sentence(log: Log, **how: object) -> str:

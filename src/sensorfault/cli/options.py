@@ -13,7 +13,7 @@ json_option = click.option(
     "--json", "json_path", type=click.Path(path_type=str), help="Write the answer as JSON; - for standard output."
 )
 method_option = click.option(
-    "--method", default="elm-cross-validated", show_default=True, help="See 'sensorfault methods'."
+    "--method", default="relative-conditioning", show_default=True, help="See 'sensorfault methods'."
 )
 model_option = click.option(
     "--model", "model_path", type=click.Path(path_type=Path), help="A model that 'sensorfault fit' wrote."

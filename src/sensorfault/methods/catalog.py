@@ -40,7 +40,7 @@ _RECIPES = (
     car.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
-DEFAULT = elm_cross_validated.RECIPE.name
+DEFAULT = relative_conditioning.RECIPE.name
 
 
 def recipe(name: str) -> Recipe:
