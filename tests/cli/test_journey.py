@@ -84,9 +84,8 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
 def test_detect_without_a_model_says_what_that_means(run: Run, drive: Path) -> None:
     said = run("detect", drive, "--json", "-")
     assert said.code == 0, said.err
-    assert (
-        "No model was given: relative-conditioning was fitted on the log's own beginning, 0:00.00 to 0:39.99" in said.err
-    )
+    said_of = "relative-conditioning was fitted on the log's own beginning, 0:00.00 to 0:39.99"
+    assert f"No model was given: {said_of}" in said.err
     assert "taken as healthy" in said.err
     assert "the false-alarm rate is not known" in said.err
     told = json.loads(said.out)
