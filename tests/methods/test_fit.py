@@ -201,3 +201,14 @@ def test_gaps_in_the_training_are_no_rows_of_it() -> None:
     model = fit(fitted.shifted(log(), value), held_out=0.0)
     assert model.summary["rows"] == 1900
     assert all(np.isfinite(np.asarray(leaf)).all() for leaf in jax.tree.leaves(model.monitor.residual))
+
+
+def test_conditioning_wants_rows_in_a_row() -> None:
+    """A channel that comes with four of five ticks is left to its silence; where all are like that, it is said."""
+    late = log().value.copy()
+    late[::5, 0] = np.nan
+    made = fit(fitted.shifted(log(), late), "relative-conditioning", held_out=0.0)
+    assert made.summary["not_watched"]["gyro.x"] == "slower than the clock"
+    assert made.watched[1]
+    late[::3, :6] = np.nan
+    assert "no channel to watch" in sentence(fitted.shifted(log(), late), method="relative-conditioning")

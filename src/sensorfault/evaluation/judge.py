@@ -80,7 +80,9 @@ def noticed_s(event: Event) -> float:
 
 def _of(fault: Fault, events: Sequence[Event], tick_s: float) -> list[Event]:
     first, last = fault.start_s - tick_s / 2, fault.end_s + GRACE_S
-    return sorted((event for event in events if first <= event.start_s <= last), key=noticed_s)
+    # a silence reaches back to the last word heard, which in a hole of the clock lies before the onset
+    mine = (event for event in events if first <= noticed_s(event) and event.start_s <= last)
+    return sorted(mine, key=noticed_s)
 
 
 def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:

@@ -4,15 +4,16 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.logs.table import Log
-from sensorfault.methods.joint import Training, deaf, limited
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.joint import LEAST_ROWS, Training, deaf, limited
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
-from sensorfault.training.conditioning import LAGS, fit_conditioning
+from sensorfault.training.conditioning import LAGS, fit_conditioning, unbroken
 from sensorfault.training.cross_validation import BLOCKS
 from sensorfault.training.tapes import score_tape
 
+OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
 READMIT_S = 0.5  # a channel is taken at its own word again so long after the last accusation
 
 
@@ -25,7 +26,7 @@ def conditioned(name: str, log: Log, lags: int = LAGS, single: bool = True, cros
     Raises:
         LogError: too few complete rows, or nothing to watch.
     """
-    training = Training.of(name, log)
+    training = in_a_row(name, log, lags)
     residual = fit_conditioning(log.time, log.value, training.rows, training.watched, lags)
     monitor = deaf(log, residual, Mahalanobis(single), READMIT_S)
     score, runs = score_tape(monitor, log)
@@ -34,6 +35,22 @@ def conditioned(name: str, log: Log, lags: int = LAGS, single: bool = True, cros
     if cross_validated:
         largest = max(largest, float(np.nanmax(unseen_scores(monitor, training, lags))))
     return limited(name, training, monitor, residual.cov, "mahalanobis", largest, runs)
+
+
+def in_a_row(name: str, log: Log, lags: int = LAGS) -> Training:
+    """The log as conditioning sees it: rows that follow `lags` others, of channels that come with nearly every tick.
+
+    Raises:
+        LogError: nothing to watch, or too few such rows.
+    """
+    training = Training.of(name, log, OFTEN)
+    rows = int(unbroken(log.time, training.rows, lags).sum())
+    if rows < LEAST_ROWS:
+        raise LogError(
+            f"{log.name} has {rows} rows that follow {lags} complete ones without a gap, {name} needs {LEAST_ROWS}; "
+            "give it more data, or watch fewer channels."
+        )
+    return training
 
 
 def unseen_scores(deaf: Monitor, training: Training, lags: int = LAGS) -> Float[np.ndarray, "T K"]:

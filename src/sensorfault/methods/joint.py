@@ -37,13 +37,13 @@ class Training:
     reasons: dict[str, str]
 
     @classmethod
-    def of(cls, name: str, log: Log) -> "Training":
-        """For the method of that name.
+    def of(cls, name: str, log: Log, often: float = 0.5) -> "Training":
+        """For the method of that name; watched is what comes with at least `often` of the ticks.
 
         Raises:
             LogError: too few complete rows, or nothing to watch.
         """
-        watched, reasons = watchable(log)
+        watched, reasons = watchable(log, often)
         rows = complete(log, watched)
         if rows.sum() < LEAST_ROWS:
             raise LogError(

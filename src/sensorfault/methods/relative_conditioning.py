@@ -6,8 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.conditioned import conditioned, unseen_scores
-from sensorfault.methods.joint import Training
+from sensorfault.methods.conditioned import conditioned, in_a_row, unseen_scores
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.statistic.relative import Relative
@@ -29,7 +28,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     relative = Relative(joint.statistic, jnp.asarray(memory), jnp.asarray(lowest), jnp.asarray(highest))
     monitor = eqx.tree_at(lambda m: m.branches[0], model.monitor, replace(joint, statistic=relative))
     session.tell("scoring blocks left out of the fit")
-    limit = tail_limit(unseen_scores(deaf(monitor), Training.of(RECIPE.name, log)), log.period_s, PER_HOUR)
+    limit = tail_limit(unseen_scores(deaf(monitor), in_a_row(RECIPE.name, log)), log.period_s, PER_HOUR)
     monitor = eqx.tree_at(lambda m: m.branches[0].threshold, monitor, Fixed(jnp.asarray(limit)))
     return replace(model, monitor=monitor, tests=(("mahalanobis, relative", None), *model.tests[1:]))
 

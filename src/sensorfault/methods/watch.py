@@ -6,20 +6,20 @@ from jaxtyping import Bool
 from sensorfault.logs.table import Log, LogError
 
 
-def watchable(log: Log) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
-    """Channels that come with (nearly) every tick and move; for the rest, path -> reason in a few words.
+def watchable(log: Log, often: float = 0.5) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
+    """Channels that come with at least `often` of the ticks and move; for the rest, path -> reason in a few words.
 
     Raises:
         LogError: nothing is left to watch.
     """
     measured = log.fresh & np.isfinite(log.value)
-    often = measured.mean(axis=0) >= 0.5
+    fast = measured.mean(axis=0) >= often
     watched = np.zeros(len(log.channels), bool)
     reasons: dict[str, str] = {}
     for i, channel in enumerate(log.channels):
         if not channel.watch:
             reasons[channel.path] = "marked watch = false"
-        elif not often[i]:
+        elif not fast[i]:
             reasons[channel.path] = "slower than the clock"
         elif np.ptp(log.value[measured[:, i], i]) == 0:
             reasons[channel.path] = "constant in the training data"
