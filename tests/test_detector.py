@@ -120,7 +120,7 @@ def held_often() -> Log:
 def test_live_knows_a_held_value_of_a_judged_sensor() -> None:
     """What is merely held is not tested, so it does not add to the repeats of a jam, live as in the log."""
     log = held_often()
-    model = fit(log.between(end_s=fitted.LEARN_S), held_out=0.0)
+    model = fit(log.between(end_s=fitted.LEARN_S), "elm-autoencoder", held_out=0.0)
     assert all(model.watched)
     rest = log.between(fitted.LEARN_S + 0.01, 110.0)  # its first row is new
     found, live = detect(model, rest), Live(model)

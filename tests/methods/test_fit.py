@@ -138,7 +138,8 @@ def test_no_log_to_speak_of(rows: int) -> None:
 
 def test_too_few_rows() -> None:
     assert "needs 50" in sentence(log().between(end_s=0.9), held_out=0.0)
-    fit(log().between(end_s=1.0), held_out=0.0)
+    assert "46 rows that follow 4 complete ones" in sentence(log().between(end_s=1.0), held_out=0.0)
+    fit(log().between(end_s=1.0), "elm-autoencoder", held_out=0.0)
 
 
 def test_an_unknown_method() -> None:
@@ -166,7 +167,7 @@ def test_channels_that_never_come_together() -> None:
     value = log().value.copy()
     value[::2, :3] = np.nan
     value[1::2, 3:6] = np.nan
-    said = sentence(fitted.shifted(log(), value))
+    said = sentence(fitted.shifted(log(), value), method="elm-autoencoder")
     assert "has 0 rows with every watched channel" in said
 
 

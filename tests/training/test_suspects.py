@@ -146,9 +146,9 @@ def test_isolation_by_hand() -> None:
 
 
 def test_fit_leaves_them_out_and_says_so() -> None:
-    clean = fit(healthy(), held_out=0.0)
+    clean = fit(healthy(), "elm-autoencoder", held_out=0.0)
     lying = inject(healthy(), FAULTS)
-    model = fit(lying.log, held_out=0.0)
+    model = fit(lying.log, "elm-autoencoder", held_out=0.0)
     told = model.summary["training_suspects"]
     assert clean.summary["training_suspects"] == []
     assert len(told) == 8
