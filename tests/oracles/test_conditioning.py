@@ -73,6 +73,27 @@ def test_residual_score_and_blame_are_those_of_the_joint_gaussian() -> None:
         np.testing.assert_array_equal(told.scores[1].blame[t, 0], told.scores[0].blame[t, 0])
 
 
+def test_without_levels_it_is_least_squares_on_the_changes() -> None:
+    train = drive(3000) + np.cumsum(np.random.default_rng(4).standard_normal((3000, CHANNELS)), axis=0)
+    fitted = fit_conditioning(time(3000), train, np.ones(3000, bool), EACH, LAGS, levels=False)
+    change = np.diff(train, axis=0)
+    past = np.array([np.concatenate([change[t - j] for j in range(1, LAGS)]) for t in range(LAGS, len(change))])
+    b = np.linalg.lstsq(past, change[LAGS:], rcond=None)[0]
+    want = np.cov((change[LAGS:] - past @ b).T, bias=True)
+    scale = np.sqrt(np.outer(np.diag(want), np.diag(want)))
+    np.testing.assert_allclose(fitted.cov / scale, want / scale, atol=1e-2)
+    rows = np.array([train[t : t - LAGS : -1].ravel() for t in range(LAGS, 3000)]) - np.tile(fitted.center, LAGS)
+    told = rows[:-1] @ np.asarray(fitted.weights).T + np.asarray(fitted.center)
+    np.testing.assert_allclose((told - (train[LAGS:-1] + past @ b)) / np.sqrt(np.diag(want)), 0, atol=5e-2)
+
+
+def test_without_levels_an_offset_moves_nobody_else() -> None:
+    """What lasts is the channel's own: the weights of its rows add up to one on itself and to nothing on the others."""
+    fitted = fit_conditioning(time(3000), drive(3000), np.ones(3000, bool), EACH, LAGS, levels=False)
+    reach = np.asarray(fitted.weights).reshape(CHANNELS, LAGS, CHANNELS).sum(axis=1)
+    np.testing.assert_allclose(reach / np.outer([0.01, 1, 10, 100], [100, 1, 0.1, 0.01]), np.eye(CHANNELS), atol=1e-9)
+
+
 @pytest.mark.parametrize("known", [EACH, EACH & False, np.array([True, False, True, True]), np.arange(4) == 2])
 def test_precision_is_the_inverse_of_what_is_known(known: np.ndarray) -> None:
     root = np.random.default_rng(3).standard_normal((CHANNELS, CHANNELS))

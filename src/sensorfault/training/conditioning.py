@@ -1,5 +1,7 @@
 """Linear conditioning: what the newest row owes to the ones before it, from their joint covariance."""
 
+from itertools import pairwise
+
 import sensorfault._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
@@ -32,8 +34,13 @@ def fit_conditioning(
     watched: Bool[np.ndarray, " C"],
     lags: int = LAGS,
     bound: float = BOUND,
+    levels: bool = True,
 ) -> Conditioning:
-    """From healthy rows [SI] on one clock; `complete`: those that hold every watched channel."""
+    """From healthy rows [SI] on one clock; `complete`: those that hold every watched channel.
+
+    Without `levels` the change of a row is regressed on the changes before it: an offset that lasts is then the
+    channel's own, and moves what is expected of no other.
+    """
     channels = len(watched)
     tick_s = float(np.median(np.diff(time)))
     rows = value[complete]
@@ -41,13 +48,18 @@ def fit_conditioning(
     sigma = np.where(watched, rows.std(axis=0), 1.0)
     x = np.where(watched & complete[:, None], (value - center) / sigma, 0.0)
     at = np.flatnonzero(unbroken(time, complete, lags))
-    # joint covariance of [x_t, x_t-1 .. x_t-W]
-    joint = np.concatenate([x[at - lag] for lag in range(lags + 1)], axis=1)
+    # joint covariance of [x_t, x_t-1 .. x_t-W], or of the differences between them
+    stacked = [x[at - lag] for lag in range(lags + 1)]
+    joint = np.concatenate(stacked if levels else [a - b for a, b in pairwise(stacked)], axis=1)
     s = joint.T @ joint / len(at) + RIDGE * np.eye(joint.shape[1])
     now, past = slice(channels), slice(channels, None)
     # A = S_xy S_yy^-1,  S_x|y = S_xx - S_xy S_yy^-1 S_yx
     a = np.linalg.solve(s[past, past], s[past, now]).T
     cov = s[now, now] - a @ s[past, now]
+    if not levels:
+        # x_t-1 + sum_j B_j (x_t-j - x_t-j-1), as weights of the rows: A_j = B_j - B_j-1, B_0 = -I, B_W = 0
+        one = np.eye(channels)
+        a = np.concatenate([a, 0 * one], axis=1) - np.concatenate([-one, a], axis=1)
     second = max(round(1 / tick_s), 1)
     changed = x[second:] - x[:-second] if len(x) > second else x
     drift = (changed**2).mean(axis=0) / (second * tick_s)
