@@ -93,13 +93,13 @@ def whole_car() -> Case:
     return replace(alone, name="car", monitor=monitor, lie=lie, named=None)
 
 
-def bicycle() -> Case:
-    """The bicycle's filter, which accuses the motion and no channel, where the car is under way."""
+def of_motion(name: str) -> Case:
+    """A recipe that accuses the motion and no channel, where the car is under way."""
     log = drive(300.0, seed=3).log.select([*IMU, *POSITION, "gnss.speed", "gnss.course"])
-    monitor = METHODS["bicycle-kalman"].build(log.between(120.0, 240.0), 0, Session()).monitor
+    monitor = METHODS[name].build(log.between(120.0, 240.0), 0, Session()).monitor
     part = log.between(*UNDER_WAY)
     lie = np.concatenate([np.zeros(6), np.deg2rad([0.01, 0.01]), [40.0], [2.0]])
-    return Case("bicycle-kalman", monitor, samples(part.time, part.value, part.fresh), lie, BACK_S, named=())
+    return Case(name, monitor, samples(part.time, part.value, part.fresh), lie, BACK_S, named=())
 
 
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
@@ -141,7 +141,8 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 
 ZOO = {case.name: case for case in zoo()}
-ALONE = {"motion-deficit": deficit, "bicycle-kalman": bicycle, "car": whole_car}
+MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
+ALONE = {"motion-deficit": deficit, "car": whole_car, **MOTION}
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
 

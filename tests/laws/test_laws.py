@@ -248,7 +248,8 @@ def assert_fleet(case: Case, vehicles: int) -> None:
         mine = jax.tree.map(lambda x, i=i: np.asarray(x[i]), told)
         assert_close(mine, (single.reports.verdict, single.reports.residual.value, single.reports.trust.value))
         end = jax.tree.map(lambda x, i=i: np.asarray(x[i]), states)
-        assert_close(end, jax.tree.map(lambda x: x[-1], single.states))
+        # a window's moments are sums of cubes that cancel: what rounding leaves is larger there than in what is told
+        assert_close(end, jax.tree.map(lambda x: x[-1], single.states), 1e-8)
 
 
 # 6. Saved and loaded: the same to the bit. See test_store.py

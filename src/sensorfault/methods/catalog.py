@@ -18,6 +18,7 @@ from sensorfault.methods import (
     pca,
     persistence,
     relative_conditioning,
+    side_force,
 )
 from sensorfault.methods.recipe import Recipe
 
@@ -37,6 +38,7 @@ _RECIPES = (
     linear_extrapolation.RECIPE,
     motion_deficit.RECIPE,
     bicycle_kalman.RECIPE,
+    side_force.RECIPE,
     car.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}

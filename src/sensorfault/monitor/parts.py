@@ -15,7 +15,9 @@ from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.residual.several import Several
+from sensorfault.monitor.residual.side_force import SideForce
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
+from sensorfault.monitor.statistic.aside import Lasting
 from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
@@ -32,7 +34,7 @@ from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
-from sensorfault.vehicles.inertial import Inertial
+from sensorfault.vehicles.inertial import Inertial, SideOn
 
 PARTS: dict[str, type[eqx.Module]] = {
     part.__name__: part
@@ -40,10 +42,10 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Monitor, Branch),
         *(Reconstruction, Conditioning, Several),
         *(Prediction, Extrapolation, Displacement),
-        *(MotionDeficit, VelocityDeficit, Inertial),
+        *(MotionDeficit, VelocityDeficit, Inertial, SideForce, SideOn),
         *(Dense, Linear, Mlp, Lstm, LstmLayer),
         *(Norm, Mahalanobis, Exchange, Repeats, Of, Relative),
-        *(Deficit, Shortfall, Standing, Slippage),
+        *(Deficit, Shortfall, Standing, Slippage, Lasting),
         *(BicycleKalman, Columns, Whitened, Normality),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),

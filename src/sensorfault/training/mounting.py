@@ -48,6 +48,19 @@ class Mounting:
         """course rate = yaw . (gyro - gyro_bias)."""
         return self.yaw_sign * self.up
 
+    @property
+    def axis(self) -> Float[np.ndarray, "3"]:
+        """Axis about which a positive rate of the gyro turns the car anticlockwise.
+
+        `up`, but for units that tell gravity with the other sign than any other force (Dresden's, a telephone's).
+        """
+        return -self.yaw_sign * self.up
+
+    @property
+    def left(self) -> Float[np.ndarray, "3"]:
+        """Across axis and forward."""
+        return np.cross(self.axis, self.forward)
+
 
 def inertial(mounting: Mounting, found: Roles) -> Inertial:
     """The part that reads such a unit; a receiver that seems to be early is taken as not late."""

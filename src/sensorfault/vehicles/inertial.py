@@ -41,6 +41,27 @@ class Inertial(eqx.Module):
         return jnp.where(self.lag_s > 0, jnp.exp(-dt / jnp.where(self.lag_s > 0, self.lag_s, 1.0)), 0.0)
 
 
+class SideOn(eqx.Module):
+    """What the same unit feels of a turn, fitted by training/side_force.py.
+
+    Force to the left = left . force - level, anticlockwise rate = up . gyro - drift. `gyro`, `accelerometer`: columns.
+    """
+
+    left: Float[Array, "3"]
+    level: Float[Array, ""]  # [m/s^2]
+    up: Float[Array, "3"]
+    drift: Float[Array, ""]  # [rad/s]
+    gyro: tuple[int, int, int] = eqx.field(static=True)
+    accelerometer: tuple[int, int, int] = eqx.field(static=True)
+
+    def told(self, sample: Sample) -> tuple[Float[Array, ""], Float[Array, ""], Bool[Array, ""]]:
+        """Force to the left [m/s^2] and turn rate [rad/s], and whether all of the unit is new; zeros where not."""
+        there = jnp.stack([sample.fresh[i] for i in (*self.gyro, *self.accelerometer)]).all()
+        force = self.left @ jnp.stack([sample.value[i] for i in self.accelerometer]) - self.level
+        rate = self.up @ jnp.stack([sample.value[i] for i in self.gyro]) - self.drift
+        return jnp.where(there, force, 0.0), jnp.where(there, rate, 0.0), there
+
+
 def turned(velocity: Float[Array, "2"], by: Float[Array, ""], faster: Float[Array, ""]) -> Float[Array, "2"]:
     """A velocity (east, north) turned clockwise [rad] and made faster along itself [m/s]; never backwards.
 

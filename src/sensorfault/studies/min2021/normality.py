@@ -7,7 +7,7 @@ import numpy as np
 from sensorfault.logs import read
 from sensorfault.logs.table import Log
 from sensorfault.methods.bicycle_kalman import bicycle_kalman
-from sensorfault.methods.motion_deficit import motion_deficit
+from sensorfault.methods.catalog import METHODS
 from sensorfault.model import Model
 from sensorfault.studies.data import real
 from sensorfault.studies.findings import Effort, Findings, Row
@@ -15,11 +15,13 @@ from sensorfault.studies.min2021.normality_faults import BIASES_M, Judged, biase
 from sensorfault.studies.min2021.normality_figures import figures
 from sensorfault.studies.min2021.normality_sizes import made, sizes
 from sensorfault.training.bicycle import WARM_S, normalised
+from sensorfault.training.session import SILENT
 
 DRIVES = {"dresden_50hz": "road/dresden_50hz", "drive0708": "road/gnss_imu_drive0708", "rav4": "road/comma2k19_rav4"}
 RAV4_WHEELBASE_M = 2.65
 LEARN = 0.6
 METHOD = "bicycle-kalman"
+RIVALS = ("motion-deficit", "side-force", "car")
 REMARKS = (
     "Jarque and Bera's statistic of the paper stays below 0.34 over a whole test drive; of 500 independent normal "
     "numbers only one window in six does, so so small a maximum says that the residuals were smoothed, not normal. "
@@ -70,7 +72,7 @@ def normality(effort: Effort) -> Findings:
         rows += biases(one, trials, (2.0,) if effort.quick else BIASES_M)
         rivals: list[Model] = []
         if not effort.quick and data != "rav4":
-            rivals = [motion_deficit("motion-deficit", one.learn)]
+            rivals = [METHODS[name].build(one.learn, 0, SILENT) for name in RIVALS]
         rows += motions(one, rivals, 1 if effort.quick else 6)
     return Findings(tuple(rows), tuple(drawn), REMARKS)
 

@@ -63,9 +63,7 @@ def felt(learn: Log) -> Felt:
     if wheels:  # too straight a drive to tell how its inertial unit sits: only the wheels are made to slip
         return Felt(found.position, found.velocity, found.polar, wheels=wheels)
     mounted = fit_mounting(learn, found)
-    up = -mounted.yaw_sign * mounted.up  # the gyro's positive sense seen from above is the other way round
-    left = np.cross(mounted.up, mounted.forward)
-    axes = [tuple(float(x) for x in axis) for axis in (mounted.forward, left, up)]
+    axes = [tuple(float(x) for x in axis) for axis in (mounted.forward, mounted.left, mounted.axis)]
     return Felt(found.position, found.velocity, found.polar, found.accelerometer, found.gyro, (), *axes)  # type: ignore[arg-type]
 
 
