@@ -47,6 +47,22 @@ def test_without_a_test_it_stands_for_as_long_as_the_slowest_sensor_is_held() ->
     np.testing.assert_array_equal(seen.reports.verdict.motion, [OK] * 2 + [FAULT] * 3 + [UNKNOWN] * 2 + [OK])
 
 
+@pytest.mark.parametrize("excuses", [True, False])
+def test_a_slide_excuses_the_sensors_that_it_explains(excuses: bool) -> None:
+    """From the sample after it is seen, for the memory of the sensor's branch; the other branch is not excused."""
+    presuming = replace(branch(each(2)), memory_s=2.0)
+    of_motion = replace(branch(each(2, 1)), subject="motion", excuses=excuses)
+    monitor = says([presuming, of_motion, branch(each(2, 2))], (0, 1))
+    told = [np.zeros((ROWS, 2)) for _ in range(3)]
+    told[0][1:8, 0] = 5.0  # accused by what presumes the model ...
+    told[1][[0, 2], 0] = 5.0  # slides
+    told[2][7, 1] = 5.0
+    seen = walk(monitor, script(tuple(told)))
+    # what slides at 2 s is heard only where the sensor was excused by then
+    np.testing.assert_array_equal(seen.channel[1:, 0], [OK] * 4 + [FAULT] * 3 if excuses else [FAULT] * 7)
+    np.testing.assert_array_equal(seen.channel[:, 1], [OK] * 7 + [FAULT])
+
+
 def test_a_monitor_that_does_not_judge_motion_does_not_know_it() -> None:
     seen = walk(says([branch(each(2))], (0, 1)), script(scores({}, {})[0]))
     assert (seen.reports.verdict.motion == UNKNOWN).all()

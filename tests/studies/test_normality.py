@@ -67,6 +67,17 @@ def test_motions_are_told_as_motions(real_data: Path, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.real
+@pytest.mark.parametrize("data", ["dresden_50hz", "drive0708"])
+def test_a_slide_is_felt_whatever_the_receiver_is_late_by(
+    data: str, real_data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
+    rows = [row for row in motions(study.judged(data, "side-force"), [], 6) if row.fault == "side-slip-2s"]
+    assert number(rows, magnitude=2.0, metric="detection_rate") == 1
+    assert {row.value for row in rows if row.metric in ("wrong_exclusions", "chance")} == {0}
+
+
+@pytest.mark.real
 def test_healthy_innovations_are_about_as_wide_as_claimed(real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
     rows = study._spreads(drive("drive0708"))

@@ -62,7 +62,9 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
     channels, count = len(log.channels), sum(len(names) for names, _, _ in tests)
     deaf = Monitor(
         residual=Several(parts, jnp.stack(answers)),
-        branches=tuple(Branch(test, Fixed(jnp.full(len(names), jnp.inf))) for names, test, _ in tests),
+        branches=tuple(
+            Branch(test, Fixed(jnp.full(len(names), jnp.inf)), memory_s=_presumes_s(test)) for names, test, _ in tests
+        ),
         decision=Exceed(share=1.0),
         recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(READMIT_S), channels),
         hold_s=jnp.asarray(hold_s(log)),
@@ -184,6 +186,11 @@ def _named(log: Log, names: tuple[str, ...], of: Of) -> Iterator[tuple[str, str]
     masks = [test.along, test.across] if isinstance(test, Slippage) else [test.accused] * len(names)  # type: ignore[attr-defined]
     for name, mask in zip(names, masks, strict=True):
         yield name, TOGETHER.join(c.path for c, mine in zip(log.channels, np.asarray(mask), strict=True) if mine)
+
+
+def _presumes_s(of: Of) -> float:
+    """After a slide a velocity that differs from the inertial unit's is no sensor's fault, until it leads that anew."""
+    return LED_S if isinstance(of.statistic, Slippage) else 0.0
 
 
 def _mask(channels: int, *columns: int) -> Bool[Array, " C"]:

@@ -32,7 +32,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     statistic = Lasting(jnp.asarray(CONSTANT_S), jnp.asarray(compared))
     deaf = Monitor(
         residual=residual,
-        branches=(Branch(statistic, Fixed(jnp.full(1, jnp.inf)), subject=MOTION, memory_s=MEMORY_S),),
+        branches=(Branch(statistic, Fixed(jnp.full(1, jnp.inf)), subject=MOTION, memory_s=MEMORY_S, excuses=True),),
         decision=Exceed(),
         recovery=Drop(),
         hold_s=jnp.asarray(hold_s(log)),

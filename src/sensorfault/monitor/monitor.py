@@ -32,7 +32,9 @@ class Branch(eqx.Module):
     `gates`: an alarm of this branch may keep the present sample out of the filter. A window's alarm must not: it is
     about the past. `certain`: it accuses by itself (an exact repeat), so all it accuses are taken out at once, before
     the largest of the others is looked for. `subject`: "motion" for a branch that judges the vehicle instead of its
-    sensors, which says nothing while a sensor is at fault nor for `memory_s` after [s].
+    sensors. Such a branch says nothing while a sensor is at fault nor for `memory_s` after [s]. A sensor's branch with
+    a memory presumes that the vehicle moves like its model, and says nothing while a motion that `excuses` is at fault,
+    nor for so long after: one that the accused sensor could not have made up.
     """
 
     statistic: Stage[Any, Residual, Score, Any]
@@ -41,6 +43,7 @@ class Branch(eqx.Module):
     certain: bool = eqx.field(static=True, default=False)
     subject: str = eqx.field(static=True, default="sensor")
     memory_s: float = eqx.field(static=True, default=0.0)
+    excuses: bool = eqx.field(static=True, default=False)
 
     def __check_init__(self) -> None:
         if self.subject not in SUBJECTS:
@@ -50,7 +53,7 @@ class Branch(eqx.Module):
 class MonitorState(NamedTuple):
     """The states of the parts; of each channel the last value and its time, the last verdict and its test's time.
 
-    Of the motion the last verdict and its time, and when a sensor was last at fault.
+    Of the motion the last verdict and its time, when a sensor was last at fault, and when the vehicle last slid.
     """
 
     residual: Any
@@ -64,6 +67,7 @@ class MonitorState(NamedTuple):
     motion: Int8[Array, ""]
     moved: Float[Array, ""]
     troubled: Float[Array, ""]
+    slid: Float[Array, ""]
 
 
 class _Judgement(NamedTuple):
@@ -108,8 +112,7 @@ class Monitor(eqx.Module):
             jnp.full(channels, UNKNOWN, jnp.int8),
             jnp.full(channels, NEVER, float),
             jnp.asarray(UNKNOWN, jnp.int8),
-            jnp.asarray(NEVER, float),
-            jnp.asarray(NEVER, float),
+            *[jnp.asarray(NEVER, float)] * 3,
         )
 
     def step(self, state: MonitorState, sample: Sample) -> tuple[MonitorState, Report]:
@@ -125,7 +128,7 @@ class Monitor(eqx.Module):
         told, decided, struck, out = self._exclude(state, residual, first)
         verdict, tested, gated = self._verdict(state, sample, told, struck, out)
         troubled = jnp.where(verdict.sample == FAULT, sample.time, state.troubled)
-        motion, moved = self._motion(state, sample, first, troubled)
+        motion, moved, slid = self._motion(state, sample, first, troubled)
         verdict = verdict._replace(motion=motion)
         trust, recovered = self.recovery.evaluate(state.recovery, (sample, residual, verdict, gated))
         trust = trust._replace(learn=trust.learn & ~told.suspect)
@@ -147,6 +150,7 @@ class Monitor(eqx.Module):
             motion=motion,
             moved=moved,
             troubled=troubled,
+            slid=slid,
         )
         return after, Report(residual, first.scores, first.limits, verdict, trust, silence)
 
@@ -164,7 +168,11 @@ class Monitor(eqx.Module):
         for branch, (of_statistic, of_threshold) in zip(self.branches, state.branches, strict=True):
             score, s = branch.statistic.evaluate(of_statistic, residual)
             limit, t = branch.threshold.evaluate(of_threshold, (residual, score))
-            scores.append(score._replace(valid=score.valid & ~jnp.isnan(score.value) & ~jnp.isnan(limit)))
+            valid = score.valid & ~jnp.isnan(score.value) & ~jnp.isnan(limit)
+            if branch.subject == "sensor" and branch.memory_s > 0:
+                since = residual.time - state.slid
+                valid = valid & ~((since >= 0) & (since <= branch.memory_s))
+            scores.append(score._replace(valid=valid))
             limits.append(limit)
             pending.append((s, t))
         of_sensors = [i for i, branch in enumerate(self.branches) if branch.subject == "sensor"]
@@ -245,18 +253,23 @@ class Monitor(eqx.Module):
 
     def _motion(
         self, state: MonitorState, sample: Sample, judged: _Judgement, troubled: Float[Array, ""]
-    ) -> tuple[Int8[Array, ""], Float[Array, ""]]:
-        """The verdict on the vehicle's motion, by tests whose evidence no faulty sensor touched, and its time."""
-        tested = wrong = jnp.zeros((), bool)
+    ) -> tuple[Int8[Array, ""], Float[Array, ""], Float[Array, ""]]:
+        """The verdict on the vehicle's motion, by tests whose evidence no faulty sensor touched, its time, and when
+        the vehicle last slid.
+        """
+        tested = wrong = slides = jnp.zeros((), bool)
         spoiled = jnp.zeros((), bool)
         for branch, score, limit in zip(self.branches, judged.scores, judged.limits, strict=True):
             if branch.subject == "motion":
                 clean = sample.time - troubled > branch.memory_s
                 tested |= clean & score.valid.any()
-                wrong |= clean & (score.valid & (score.value > limit)).any()
+                over = clean & (score.valid & (score.value > limit)).any()
+                wrong |= over
+                slides |= over & branch.excuses
                 spoiled |= ~clean
         age = sample.time - state.moved
         stands = (age >= 0) & (age <= self.hold_s.max()) & ~spoiled
         old = jnp.where(stands, state.motion, jnp.int8(UNKNOWN))
         new = jnp.where(wrong, jnp.int8(FAULT), jnp.int8(OK))
-        return jnp.where(tested, new, old), jnp.where(tested, sample.time, state.moved)
+        moved = jnp.where(tested, sample.time, state.moved)
+        return jnp.where(tested, new, old), moved, jnp.where(slides, sample.time, state.slid)

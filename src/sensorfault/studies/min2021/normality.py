@@ -6,7 +6,6 @@ import numpy as np
 
 from sensorfault.logs import read
 from sensorfault.logs.table import Log
-from sensorfault.methods.bicycle_kalman import bicycle_kalman
 from sensorfault.methods.catalog import METHODS
 from sensorfault.model import Model
 from sensorfault.studies.data import real
@@ -40,8 +39,8 @@ REMARKS = (
 )
 
 
-def judged(data: str) -> Judged:
-    """A drive, fitted on its first part.
+def judged(data: str, method: str = METHOD) -> Judged:
+    """A drive, the method fitted on its first part.
 
     Raises:
         LogError: the real logs are not there.
@@ -51,7 +50,7 @@ def judged(data: str) -> Judged:
         log = replace(log, wheelbase_m=RAV4_WHEELBASE_M)
     cut = float(log.time[0]) + LEARN * log.duration_s
     learn = log.between(end_s=cut)
-    return Judged(data, learn, log.between(cut), bicycle_kalman(METHOD, learn), felt(learn))
+    return Judged(data, learn, log.between(cut), METHODS[method].build(learn, 0, SILENT), felt(learn))
 
 
 def normality(effort: Effort) -> Findings:
