@@ -20,6 +20,7 @@ from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
+from sensorfault.simulation import arm
 from sensorfault.simulation.road import drive
 from sensorfault.training.gradient import Plan
 from sensorfault.training.session import Session
@@ -102,6 +103,15 @@ def bicycle() -> Case:
     return Case("bicycle-kalman", monitor, samples(part.time, part.value, part.fresh), lie, BACK_S, named=())
 
 
+def two_links() -> Case:
+    """The filter of a two-joint arm."""
+    monitor = METHODS["arm-kalman"].build(arm.run(seed=1), 0, Session()).monitor
+    log = arm.run(seed=2, samples=400)
+    lie = np.array([0.5, 0.5, 0.5, 0.5, 0.0, 0.0])
+    rows = samples(log.time, log.value, log.fresh)
+    return Case("arm-kalman", monitor, rows, lie, 5 * arm.PERIOD_S, named=(0, 1, 2, 3))
+
+
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
     """The monitor of a joint test and one of repeats, for its channels in another order."""
     residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
@@ -141,7 +151,7 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 
 ZOO = {case.name: case for case in zoo()}
-ALONE = {"motion-deficit": deficit, "bicycle-kalman": bicycle, "car": whole_car}
+ALONE = {"motion-deficit": deficit, "bicycle-kalman": bicycle, "car": whole_car, "arm-kalman": two_links}
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
 

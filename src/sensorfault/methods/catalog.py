@@ -3,6 +3,7 @@
 from sensorfault.logs.table import LogError
 from sensorfault.methods import (
     ar_predictor,
+    arm_kalman,
     bicycle_kalman,
     bp_autoencoder,
     car,
@@ -38,6 +39,7 @@ _RECIPES = (
     motion_deficit.RECIPE,
     bicycle_kalman.RECIPE,
     car.RECIPE,
+    arm_kalman.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

@@ -7,6 +7,7 @@ from sensorfault.monitor.decision.persist import Persist
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.arm_kalman import ArmKalman
 from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.displacement import Displacement
@@ -32,6 +33,7 @@ from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
+from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.inertial import Inertial
 
 PARTS: dict[str, type[eqx.Module]] = {
@@ -45,6 +47,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Norm, Mahalanobis, Exchange, Repeats, Of, Relative),
         *(Deficit, Shortfall, Standing, Slippage),
         *(BicycleKalman, Columns, Whitened, Normality),
+        *(ArmKalman, TwoLink),
         *(Fixed, ScaledMax),
         *(Exceed, Persist),
         *(Drop, Rebuild),
