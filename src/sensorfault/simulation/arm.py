@@ -11,11 +11,16 @@ from sensorfault.numerics.two_link import Constants, ahead
 PERIOD_S = 0.001  # T
 SAMPLES = 100
 VARIANCE = 1e-5  # of the noise e of each sensor, [(rad/s)^2] and [rad^2]
-CHANNELS = (
-    *(Channel("rate", f"tachometer{joint}", "rad/s") for joint in (1, 2)),
-    *(Channel("angle", f"encoder{joint}", "rad") for joint in (1, 2)),
-    *(Channel("torque", f"drive{joint}", "Nm", watch=False) for joint in (1, 2)),
-)
+
+
+def channels(joints: int) -> tuple[Channel, ...]:
+    """Of an arm with so many joints: a tachometer, an encoder and a drive each; a drive is told, not judged."""
+    each = range(1, joints + 1)
+    return (
+        *(Channel("rate", f"tachometer{joint}", "rad/s") for joint in each),
+        *(Channel("angle", f"encoder{joint}", "rad") for joint in each),
+        *(Channel("torque", f"drive{joint}", "Nm", watch=False) for joint in each),
+    )
 
 
 @dataclass(frozen=True)
@@ -54,9 +59,10 @@ def motion(setting: Setting, samples: int = SAMPLES, push: Float[np.ndarray, "T 
         state[k + 1] = ahead(setting.constants, state[k], torque[k], PERIOD_S)
         state[k + 1] += 0.0 if push is None else push[k]
     value = np.concatenate([state, torque], axis=1)
-    sensors = tuple(Sensor(channel.sensor, PERIOD_S) for channel in CHANNELS)
+    said = channels(2)
+    sensors = tuple(Sensor(channel.sensor, PERIOD_S) for channel in said)
     time = PERIOD_S * np.arange(samples)
-    return Log(time, value, np.ones(value.shape, bool), CHANNELS, sensors, "arm")
+    return Log(time, value, np.ones(value.shape, bool), said, sensors, "arm")
 
 
 def run(
