@@ -1,0 +1,63 @@
+"""What methods that judge each channel by itself share: the monitor around the residual, and its limits."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.logs.table import Log
+from sensorfault.model import Model, hold_s, owners
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.statistic.absolute import Absolute
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.replay import replay_log
+from sensorfault.stage import Stage
+from sensorfault.training.limits import tail_limit
+
+PER_HOUR = 1.0  # false alarms promised, of all channels together
+HORIZON = 50  # ticks for which a stand-in is believed
+
+
+def monitor(log: Log, residual: Stage[Any, Any, Any, Any], theta: Float[np.ndarray, " C"]) -> Monitor:
+    """Limits `theta` [SI], one a channel; all that are over theirs are named at once, and out for that sample."""
+    channels = len(log.channels)
+    return Monitor(
+        residual=residual,
+        branches=(Branch(Absolute(), Fixed(jnp.asarray(theta))),),
+        decision=Exceed(),
+        recovery=Rebuild(jnp.asarray(HORIZON * log.period_s), jnp.asarray(log.period_s / 2), channels),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+    )
+
+
+def healthy(log: Log, residual: Stage[Any, Any, Any, Any]) -> tuple[Float[np.ndarray, " C"], Float[np.ndarray, " C"]]:
+    """Limits that a healthy log passes PER_HOUR times an hour in all, +inf for a channel without a residual; and the
+    root mean square of each channel's residual [SI], 1 where there is none.
+    """
+    tape = replay_log(monitor(log, residual, np.full(len(log.channels), np.inf)), log)
+    score = np.asarray(tape.scores[0])
+    tested = np.isfinite(score)
+    square = np.where(tested, score**2, 0.0).sum(axis=0) / np.maximum(tested.sum(axis=0), 1)
+    sigma = np.where(tested.any(axis=0), np.sqrt(square), 1.0)
+    return tail_limit(score, log.period_s, PER_HOUR / len(log.channels)), sigma
+
+
+def model(
+    name: str,
+    log: Log,
+    residual: Stage[Any, Any, Any, Any],
+    theta: Float[np.ndarray, " C"],
+    sigma: Float[np.ndarray, " C"],
+    told: dict[str, Any],
+) -> Model:
+    """The model with these limits."""
+    paths = [channel.path for channel in log.channels]
+    tests = tuple(("absolute", path) for path in paths)
+    watched = tuple(np.isfinite(theta).tolist())
+    told = {"training_log": log.name, "training_s": log.duration_s, **told}
+    own = monitor(log, residual, theta)
+    return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(sigma.tolist()), told)
