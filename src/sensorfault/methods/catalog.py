@@ -15,6 +15,7 @@ from sensorfault.methods import (
     lstm_predictor,
     mlp_predictor,
     motion_deficit,
+    online_network,
     pca,
     persistence,
     relative_conditioning,
@@ -38,6 +39,7 @@ _RECIPES = (
     motion_deficit.RECIPE,
     bicycle_kalman.RECIPE,
     car.RECIPE,
+    online_network.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name
