@@ -18,6 +18,7 @@ from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.numerics.two_link import Constants
 from sensorfault.replay import replay_log
 from sensorfault.simulation.arm import AS_PRINTED
+from sensorfault.training.online import noise
 from sensorfault.training.session import Session
 from sensorfault.vehicles.arm import Joints, TwoLink, joints
 
@@ -40,8 +41,7 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
     watched = np.isin(np.arange(channels), outputs)
     rows = complete(log, watched)
     _check(name, log, found, int(rows.sum()))
-    # var(x(k+1) - 2 x(k) + x(k-1)) = 6 var(e) where the motion itself is smooth
-    r = (np.diff(log.value[rows][:, outputs], 2, axis=0) ** 2).mean(axis=0) / 6
+    r = noise(log)[list(outputs)] ** 2
     limit = NormalDist().inv_cdf(1 - far / 2)
     monitor = Monitor(
         residual=ArmKalman(

@@ -16,6 +16,7 @@ from sensorfault.methods import (
     lstm_predictor,
     mlp_predictor,
     motion_deficit,
+    online_network,
     pca,
     persistence,
     relative_conditioning,
@@ -39,6 +40,7 @@ _RECIPES = (
     motion_deficit.RECIPE,
     bicycle_kalman.RECIPE,
     car.RECIPE,
+    online_network.RECIPE,
     arm_kalman.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}

@@ -13,10 +13,12 @@ from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
+from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
+from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
@@ -31,6 +33,7 @@ from sensorfault.monitor.statistic.standing import Standing
 from sensorfault.monitor.statistic.whitened import Whitened
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
+from sensorfault.monitor.threshold.sigma import Sigma
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
 from sensorfault.vehicles.arm import TwoLink
@@ -41,14 +44,14 @@ PARTS: dict[str, type[eqx.Module]] = {
     for part in (
         *(Monitor, Branch),
         *(Reconstruction, Conditioning, Several),
-        *(Prediction, Extrapolation, Displacement),
+        *(Prediction, Extrapolation, Displacement, OnlineNetwork),
         *(MotionDeficit, VelocityDeficit, Inertial),
         *(Dense, Linear, Mlp, Lstm, LstmLayer),
-        *(Norm, Mahalanobis, Exchange, Repeats, Of, Relative),
+        *(Norm, Absolute, Mahalanobis, Exchange, Repeats, Of, Relative),
         *(Deficit, Shortfall, Standing, Slippage),
         *(BicycleKalman, Columns, Whitened, Normality),
         *(ArmKalman, TwoLink),
-        *(Fixed, ScaledMax),
+        *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),
         *(Drop, Rebuild),
     )

@@ -1,0 +1,118 @@
+"""A network that learns while it watches: how it begins, and what it is taught beforehand in the same way."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Float
+
+from sensorfault.logs.table import Log
+from sensorfault.monitor.residual.online_network import OnlineNetwork
+from sensorfault.numerics.networks.dense import Mlp
+from sensorfault.run import samples
+from sensorfault.training.initial import new_mlp
+from sensorfault.types import Sample, Trust
+
+GAP = 1.5  # ticks without a row that break a window
+
+
+@dataclass(frozen=True)
+class Learning:
+    """`hidden` units; `delays` (m, n), `rate`, `iterations`, `absolute` and `warm` as in OnlineNetwork.
+
+    `passes` over the healthy log teach it beforehand. With `scratch`, as printed, it begins knowing nothing all the
+    same, and nothing is valid before `warm` samples in a row have been foretold within their limits.
+    """
+
+    hidden: int = 5
+    delays: tuple[int, int] = (1, 1)
+    rate: float = 0.3
+    iterations: int = 10
+    absolute: bool = False
+    passes: int = 30
+    scratch: bool = False
+    warm: int = 10
+
+
+def learner(
+    log: Log, columns: tuple[int, ...], driven: tuple[int, ...], learning: Learning, seed: tuple[int, ...]
+) -> OnlineNetwork:
+    """The network for these outputs and inputs: scaled by the extremes of the healthy log, and taught on it.
+
+    It begins with random weights, but foretelling no change (or, if `absolute`, the middle of the range).
+    """
+    (m, n), outputs = learning.delays, len(columns)
+    low, high = np.nanmin(log.value, axis=0), np.nanmax(log.value, axis=0)
+    both = [*columns, *driven]
+    residual = OnlineNetwork(
+        network=_new(learning.hidden, outputs * m + len(driven) * (n + 1), outputs, seed),
+        center=jnp.asarray(((low + high) / 2)[both]),
+        half=jnp.asarray(((high - low) / 2)[both]),
+        step=jnp.asarray(_steps(log)[list(columns)]),
+        cov=jnp.eye(len(log.channels)),
+        tolerance=jnp.asarray(np.sqrt(2) * noise(log)[list(columns)]),
+        settled=jnp.zeros(outputs),
+        rate=jnp.asarray(learning.rate),
+        warm=jnp.asarray(0.0),
+        gap_s=jnp.asarray(GAP * log.period_s),
+        columns=columns,
+        driven=driven,
+        delays=learning.delays,
+        iterations=learning.iterations,
+        absolute=learning.absolute,
+    )
+    return replace(residual, network=_practised(residual, samples(log.time, log.value, log.fresh), learning.passes))
+
+
+def untaught(
+    residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: tuple[int, ...]
+) -> OnlineNetwork:
+    """The same knowing nothing, and unsure before `warm` samples in a row have been foretold within their limits."""
+    (inner,), outputs = residual.network.hidden, list(residual.columns)
+    hidden, inputs = inner.weights.shape
+    network = _new(hidden, inputs, len(outputs), seed)
+    return replace(residual, network=network, settled=jnp.asarray(limit[outputs]), warm=jnp.asarray(float(warm)))
+
+
+def noise(log: Log) -> Float[np.ndarray, " C"]:
+    """Standard deviation of each channel's noise [SI]: of what no smooth motion explains, by third differences.
+
+    White noise of variance s² has third differences of variance 20 s²; their median size is not moved by a few jumps.
+    """
+    rough = np.abs(np.diff(log.value, 3, axis=0))
+    return np.asarray(np.nanmedian(rough, axis=0) / 0.6745 / np.sqrt(20))
+
+
+def _new(hidden: int, inputs: int, outputs: int, seed: tuple[int, ...]) -> Mlp:
+    network = new_mlp(seed, inputs, outputs, (hidden,))
+    return replace(network, output=jax.tree.map(jnp.zeros_like, network.output))
+
+
+def _steps(log: Log) -> Float[np.ndarray, " C"]:
+    """The largest increment of each channel from one tick to the next [SI]."""
+    together = np.diff(log.time)[:, None] <= GAP * log.period_s
+    change = np.where(together, np.abs(np.diff(log.value, axis=0)), np.nan)
+    return np.asarray(np.nanmax(change, axis=0))
+
+
+@partial(jax.jit, static_argnums=2)
+def _practised(residual: OnlineNetwork, rows: Sample, passes: int) -> Mlp:
+    """What it has learned in so many passes over healthy rows."""
+
+    def one(state: Any, sample: Sample) -> tuple[Any, None]:
+        _, pending = residual.evaluate(state, sample)
+        there = sample.fresh
+        return residual.update(pending, Trust(sample.value, there, there & False, there, sample.born)), None
+
+    def over(state: Any, _: Array) -> tuple[Any, None]:
+        return lax.scan(one, state, rows)
+
+    state, _ = lax.scan(over, residual.init(), length=passes)
+    network: Mlp = state.network
+    return network
