@@ -16,6 +16,8 @@ from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.run import fleet, samples
 from sensorfault.types import FAULT, Report, Sample
 
+BATCH = 128  # logs at once: one compilation for any number of them
+
 
 @dataclass(frozen=True)
 class Told:
@@ -42,9 +44,13 @@ class Told:
 
 def watch(model: Model, logs: Sequence[Log]) -> Told:
     """Each log from a fresh start; all have the model's channels and one length."""
-    each = [samples(log.time, log.value, log.fresh) for log in logs]
-    kept = _watch(model.monitor, jax.tree.map(lambda *x: jnp.stack(x), *each))
-    channel, scores, limits, residual, expected = (np.asarray(x) for x in kept)
+    kept = []
+    for start in range(0, len(logs), BATCH):
+        some = [logs[min(i, len(logs) - 1)] for i in range(start, start + BATCH)]
+        value, fresh, time = (np.stack([getattr(log, name) for log in some]) for name in ("value", "fresh", "time"))
+        kept.append([np.asarray(x) for x in _watch(model.monitor, samples(time, value, fresh))])
+    parts = zip(*kept, strict=True)
+    channel, scores, limits, residual, expected = (np.concatenate(part)[: len(logs)] for part in parts)
     score, limit = np.full(channel.shape, np.nan), np.full(channel.shape[2], np.nan)
     columns = _columns(model, scores.shape[2])
     score[:, :, columns], limit[columns] = scores, limits[0, -1]

@@ -1,0 +1,128 @@
+"""The experiment on the real arm: what each method finds and lays at the right door, at one rate of false alarms."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from sensorfault.logs.table import Log
+from sensorfault.model import Model
+from sensorfault.simulation.arm import channels
+from sensorfault.studies.data import real
+from sensorfault.studies.findings import Effort
+from sensorfault.studies.niu1998.fleet import Told, watch, with_limits
+from sensorfault.studies.niu1998.isolation import (
+    GROUPS,
+    SENSORS,
+    Calibrated,
+    Isolated,
+    Runs,
+    Trial,
+    isolated,
+    missed,
+    stretches,
+    trials,
+)
+from sensorfault.studies.niu1998.numbers import Numbers
+from sensorfault.studies.niu1998.rivals import NETWORK, Rival, of_six_joints
+from sensorfault.studies.niu1998.run import joined
+from sensorfault.studies.niu1998.schunk import ARCHIVE, JOINTS, PERIOD_S, runs
+
+DATA = "schunk"
+EACH, QUICK_EACH = 8, 3  # faults of every kind and size on every sensor, for each seed
+PATHS = tuple(channel.path for channel in channels(JOINTS)[:SENSORS])
+APART = PATHS[:JOINTS], PATHS[JOINTS:]  # rates are foretold without angles, angles without rates: no twin tells
+SINGLE = ("short", "bias", "jam")  # the faults by which isolation is judged
+TIMED = ("jam", "delay", "miss")
+SHOWN = "far1e-2"
+
+
+@dataclass
+class Joints:
+    """Numbers of all rivals; one-step errors of the network's first seed [SI]; whom it accused at 5 times these."""
+
+    injected: Numbers = field(default_factory=lambda: Numbers(DATA, "injected"))
+    real: Numbers = field(default_factory=lambda: Numbers(DATA, "real"))
+    unit: Float[np.ndarray, " C"] = field(default_factory=lambda: np.zeros(0))
+    accused: Int[np.ndarray, "12 13"] = field(default_factory=lambda: np.zeros((SENSORS, SENSORS + 1), int))
+
+
+def joints(effort: Effort) -> Joints:
+    """All rivals on the same faults.
+
+    Raises:
+        LogError: the runs are not there.
+    """
+    told = Joints()
+    logs = runs(real("arm") / ARCHIVE)
+    rivals = of_six_joints(APART)
+    seeds = 1 if effort.quick else effort.seeds
+    for seed in range(seeds):
+        parts = Runs.of(logs, seed)
+        other, judged = stretches(parts.other), stretches(parts.judged)
+        faults: list[Trial] = []
+        for i, rival in enumerate(rivals):
+            effort.tell(f"{rival.method} on the real arm", (seed + i / len(rivals)) / seeds)
+            own = Calibrated.of(rival.build(joined(parts.learned), seed), other)
+            if rival.method == NETWORK:
+                faults = trials(judged, own.unit, QUICK_EACH if effort.quick else EACH, seed, effort.quick)
+                told.unit = told.unit if told.unit.size else own.unit
+            _quiet(told, rival, own, judged)
+            for words, limit in own.limits.items():
+                _judge(told, words, rival, with_limits(own.deaf, limit), faults, judged)
+    return told
+
+
+def _quiet(told: Joints, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
+    """One-step errors, the median over six sensors; and how often a score passes its limit where nothing lies."""
+    for group, part in list(GROUPS.items())[:2]:
+        told.real.add(group, rival.method, {"rms": float(np.median(own.unit[part]))})
+    score = np.nan_to_num(watch(own.deaf, healthy).score)
+    for words, limit in own.limits.items():
+        told.real.add(words, rival.method, {"far": float((score > limit).any(axis=2).mean())})
+
+
+def _judge(
+    told: Joints, words: str, rival: Rival, model: Model, faults: Sequence[Trial], healthy: Sequence[Log]
+) -> None:
+    """As it runs: right isolation of every kind and size, over stretches that were calm before, with chance beside."""
+    quiet = watch(model, healthy)
+    told.real.add(f"{words} as-run", rival.method, {"far": float(quiet.fault.any(axis=2).mean())})
+    chance = [np.mean(_calm(quiet, column).right) for column in range(SENSORS)]
+    seen = watch(model, [trial.log for trial in faults])
+    column = np.array([trial.column for trial in faults])
+    kinds = [(trial.kind, trial.size) for trial in faults]
+    became, silent = isolated(seen, column), missed(seen, column)
+    for kind, size in dict.fromkeys(kinds):
+        mine = np.array([one == (kind, size) for one in kinds]) & became.calm
+        for group, part in GROUPS.items():
+            rows = mine & np.isin(column, np.arange(SENSORS)[part])
+            right = silent if kind == "miss" else became.right
+            numbers = {"detection_rate": _mean(right[rows]), "chance": float(np.mean(chance[part]))}
+            if kind == "miss":
+                del numbers["chance"]
+            else:
+                delay = became.delay[rows & became.right]
+                numbers["delay_steps"] = float(np.median(delay)) if delay.size else float("nan")
+            told.injected.add(f"{words} {group}", rival.method, numbers, kind, _size(kind, size))
+    if rival.method == NETWORK and words == SHOWN:
+        five = np.array([kind in SINGLE and (kind == "jam" or size == 5.0) for kind, size in kinds]) & became.calm
+        for i in np.flatnonzero(five):
+            told.accused[column[i], :SENSORS] += became.named[i]
+            told.accused[column[i], SENSORS] += not became.named[i].any()
+
+
+def _calm(quiet: Told, column: int) -> Isolated:
+    """What would pass for a fault of this sensor where nothing lies."""
+    became = isolated(quiet, np.full(len(quiet.channel), column))
+    return replace(became, right=became.right[became.calm])
+
+
+def _mean(right: Bool[np.ndarray, " N"]) -> float:
+    return float(right.mean()) if right.size else float("nan")
+
+
+def _size(kind: str, size: float) -> float:
+    """In seconds where OTHERS counts ticks."""
+    return size * PERIOD_S if kind in TIMED else size
