@@ -60,7 +60,9 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     for g, group in enumerate(groups):
         session.tell(f"teaching network {g + 1} of {len(groups)}")
         columns = tuple(log.index(path) for path in group)
-        networks.append(learner(log.between(end_s=cut), columns, driven, setting.learning, (seed, g)))
+        networks.append(
+            learner(log.between(end_s=cut), columns, driven, setting.learning, seed, replace(session, checkpoint=None))
+        )
     session.tell("measuring what they leave")
     tape = replay_log(_monitor(log, networks, np.full(len(paths), np.inf), setting), log.between(cut))
     sigma = _spread(tape)
@@ -68,7 +70,7 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     theta = np.array([setting.theta.get(path, limit) for path, limit in zip(paths, theta, strict=True)])
     networks = [replace(one, cov=jnp.diag(jnp.asarray(sigma**2))) for one in networks]
     if setting.learning.scratch:
-        networks = [untaught(one, theta, setting.learning.warm, (seed, g)) for g, one in enumerate(networks)]
+        networks = [untaught(one, theta, setting.learning.warm, seed) for one in networks]
     told = {
         "training_log": log.name,
         "training_s": log.duration_s,

@@ -2,8 +2,7 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import jax
@@ -16,7 +15,10 @@ from sensorfault.logs.table import Log
 from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.numerics.networks.dense import Mlp
 from sensorfault.run import samples
+from sensorfault.training.gradient import Plan, train
 from sensorfault.training.initial import new_mlp
+from sensorfault.training.session import Session
+from sensorfault.training.windows import Windows
 from sensorfault.types import Sample, Trust
 
 GAP = 1.5  # ticks without a row that break a window
@@ -26,22 +28,27 @@ GAP = 1.5  # ticks without a row that break a window
 class Learning:
     """`hidden` units; `delays` (m, n), `rate`, `iterations`, `absolute` and `warm` as in OnlineNetwork.
 
-    `passes` over the healthy log teach it beforehand. With `scratch`, as printed, it begins knowing nothing all the
+    Beforehand it is trained on the healthy log by `plan`. With `scratch`, as printed, it begins knowing nothing all the
     same, and nothing is valid before `warm` samples in a row have been foretold within their limits.
     """
 
     hidden: int = 5
     delays: tuple[int, int] = (1, 1)
-    rate: float = 0.3
+    rate: float = 0.03
     iterations: int = 10
     absolute: bool = False
-    passes: int = 30
     scratch: bool = False
     warm: int = 10
+    plan: Plan = field(default_factory=lambda: Plan(rate=3e-3))
 
 
 def learner(
-    log: Log, columns: tuple[int, ...], driven: tuple[int, ...], learning: Learning, seed: tuple[int, ...]
+    log: Log,
+    columns: tuple[int, ...],
+    driven: tuple[int, ...],
+    learning: Learning,
+    seed: int,
+    session: Session,
 ) -> OnlineNetwork:
     """The network for these outputs and inputs: scaled by the extremes of the healthy log, and taught on it.
 
@@ -50,7 +57,7 @@ def learner(
     (m, n), outputs = learning.delays, len(columns)
     low, high = np.nanmin(log.value, axis=0), np.nanmax(log.value, axis=0)
     both = [*columns, *driven]
-    residual = OnlineNetwork(
+    new = OnlineNetwork(
         network=_new(learning.hidden, outputs * m + len(driven) * (n + 1), outputs, seed),
         center=jnp.asarray(((low + high) / 2)[both]),
         half=jnp.asarray(((high - low) / 2)[both]),
@@ -67,12 +74,11 @@ def learner(
         iterations=learning.iterations,
         absolute=learning.absolute,
     )
-    return replace(residual, network=_practised(residual, samples(log.time, log.value, log.fresh), learning.passes))
+    found = train(new.network, _examples(replace(new, iterations=0), log), learning.plan, seed, session)
+    return replace(new, network=found.net)
 
 
-def untaught(
-    residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: tuple[int, ...]
-) -> OnlineNetwork:
+def untaught(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: int) -> OnlineNetwork:
     """The same knowing nothing, and unsure before `warm` samples in a row have been foretold within their limits."""
     (inner,), outputs = residual.network.hidden, list(residual.columns)
     hidden, inputs = inner.weights.shape
@@ -89,7 +95,7 @@ def noise(log: Log) -> Float[np.ndarray, " C"]:
     return np.asarray(np.nanmedian(rough, axis=0) / 0.6745 / np.sqrt(20))
 
 
-def _new(hidden: int, inputs: int, outputs: int, seed: tuple[int, ...]) -> Mlp:
+def _new(hidden: int, inputs: int, outputs: int, seed: int) -> Mlp:
     network = new_mlp(seed, inputs, outputs, (hidden,))
     return replace(network, output=jax.tree.map(jnp.zeros_like, network.output))
 
@@ -101,18 +107,19 @@ def _steps(log: Log) -> Float[np.ndarray, " C"]:
     return np.asarray(np.nanmax(change, axis=0))
 
 
-@partial(jax.jit, static_argnums=2)
-def _practised(residual: OnlineNetwork, rows: Sample, passes: int) -> Mlp:
-    """What it has learned in so many passes over healthy rows."""
+def _examples(residual: OnlineNetwork, log: Log) -> Windows:
+    """What the network sees before each healthy row, each a window of one row, and what it should say to that."""
 
-    def one(state: Any, sample: Sample) -> tuple[Any, None]:
-        _, pending = residual.evaluate(state, sample)
-        there = sample.fresh
-        return residual.update(pending, Trust(sample.value, there, there & False, there, sample.born)), None
+    @jax.jit
+    def all_of(residual: OnlineNetwork, rows: Sample) -> tuple[Array, Array, Array]:
+        def one(state: Any, sample: Sample) -> tuple[Any, tuple[Array, Array, Array]]:
+            _, pending = residual.evaluate(state, sample)
+            there = sample.fresh
+            trust = Trust(sample.value, there, there & False, there, sample.born)
+            return residual.update(pending, trust), (pending.x, *residual.lesson(pending, trust))
 
-    def over(state: Any, _: Array) -> tuple[Any, None]:
-        return lax.scan(one, state, rows)
+        return lax.scan(one, residual.init(), rows)[1]
 
-    state, _ = lax.scan(over, residual.init(), length=passes)
-    network: Mlp = state.network
-    return network
+    x, target, teaches = map(np.asarray, all_of(residual, samples(log.time, log.value, log.fresh)))
+    whole = teaches.all(axis=1)
+    return Windows(x[whole], np.arange(whole.sum()), target[whole], 1)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from sensorfault.numerics.networks.dense import Mlp
 from sensorfault.numerics.networks.online import taught
@@ -107,13 +107,9 @@ class OnlineNetwork(eqx.Module):
         m, n = self.delays
         measured, filled = _of(trust.measured, self.columns), _of(trust.filled, self.columns)
         y = jnp.where(measured | filled, _of(trust.value, self.columns), state.outputs[0])
-        unjudged = state.quiet < self.warm
-        allowed = _of(trust.learn, self.columns) | (unjudged & measured)
-        teaches = allowed & (state.clean >= m) & (state.known >= m) & (state.heard > n)
-        origin, unit = self._origin(state)
-        network = taught(
-            state.network, x, (y - origin) / unit, teaches, self.tolerance / unit, self.rate, self.iterations
-        )
+        target, teaches = self.lesson(pending, trust)
+        _, unit = self._origin(state)
+        network = taught(state.network, x, target, teaches, self.tolerance / unit, self.rate, self.iterations)
         well = (~teaches | (jnp.abs(y - expected) <= self.settled)).all()
         quiet = jnp.where(well, jnp.minimum(state.quiet + 1, self.warm), 0.0)
         return _State(
@@ -123,9 +119,19 @@ class OnlineNetwork(eqx.Module):
             known=jnp.where(measured | filled, jnp.minimum(state.known + 1, m), 0.0),
             heard=state.heard,
             clean=jnp.where(measured.all(), jnp.minimum(state.clean + 1, m), 0.0),
-            quiet=jnp.where(unjudged & teaches.any(), quiet, state.quiet),
+            quiet=jnp.where((state.quiet < self.warm) & teaches.any(), quiet, state.quiet),
             time=now,
         )
+
+    def lesson(self, pending: _Work, trust: Trust) -> tuple[Float[Array, " D"], Bool[Array, " D"]]:
+        """What the network should have said to `pending.x`, and of which outputs it may be told."""
+        state = pending.state
+        m, n = self.delays
+        origin, unit = self._origin(state)
+        unjudged = state.quiet < self.warm
+        allowed = _of(trust.learn, self.columns) | (unjudged & _of(trust.measured, self.columns))
+        whole = (state.clean >= m) & (state.known >= m) & (state.heard > n)
+        return (_of(trust.value, self.columns) - origin) / unit, allowed & whole
 
     def _seen(self, outputs: Float[Array, "m D"], inputs: Float[Array, "p U"]) -> Float[Array, " N"]:
         """What the network sees: the newest outputs, the increments before them, the inputs; all about 1 at most."""
