@@ -18,10 +18,11 @@ from sensorfault.training.session import SILENT
 NETWORK, KALMAN = "online-network", "arm-kalman"
 PLAIN = ("persistence", "linear-extrapolation")
 SCRATCH, AS_PRINTED = "scratch", "scratch absolute"
+FAST = 0.3  # learning rate of what knows nothing and has 50 samples
 VARIANTS = {  # of the network, by what a row's condition calls it
     "": Learning(),
-    SCRATCH: Learning(scratch=True),
-    AS_PRINTED: Learning(scratch=True, absolute=True),
+    SCRATCH: Learning(scratch=True, rate=FAST),
+    AS_PRINTED: Learning(scratch=True, rate=FAST, absolute=True),
 }
 DEEP = Learning(hidden=20, delays=(4, 1))  # for six joints
 BELIEVED = 10  # ticks for which a stand-in is believed on the real arm
