@@ -115,7 +115,8 @@ def ours(row: Row) -> Cell:
     """A row's number; as many digits as its spread deserves."""
     if not math.isfinite(row.value):
         return Cell(NONE)
-    digits = max(_digits(row.value), _decimals(row.paper))
+    digits = _digits(row.value)
+    digits = max(digits, _decimals(row.paper)) if digits >= 2 else digits
     if row.spread and digits == 2 and abs(row.value) < 1 and row.spread < 0.005:
         digits = 3
     spread = "" if row.spread is None or not math.isfinite(row.spread) else f"±{row.spread:.{digits}f}"
@@ -130,7 +131,7 @@ def printed(row: Row) -> Cell:
 
 
 def _decimals(paper: float | None) -> int:
-    """Digits behind the point that the paper prints; ours get no fewer."""
+    """Digits behind the point that the paper prints; ours get no fewer where it is a small number."""
     return len(f"{paper:g}".partition(".")[2]) if paper is not None and math.isfinite(paper) else 0
 
 

@@ -51,8 +51,8 @@ def _network(run: Drifts) -> str:
         said.append(f"{rate:.0%} found, {far:.1%} with an early alarm, {blank:.0%} of the samples before untested")
     return (
         f"B: the recipe, trained before on healthy runs of the same motion and learning increments: {said[0]}. The "
-        f"same beginning with random weights ('{SCRATCH}'): {said[1]}. Absolute values learned from scratch, as printed "
-        f"('{AS_PRINTED}'): {said[2]}; from such a beginning 50 samples hardly let it settle."
+        f"same beginning with random weights ('{SCRATCH}'): {said[1]}. Absolute values learned from scratch, as "
+        f"printed ('{AS_PRINTED}'): {said[2]}; from such a beginning 50 samples hardly let it settle."
     )
 
 
@@ -105,9 +105,9 @@ def _slow(run: Drifts, effort: Effort) -> tuple[str, ...]:
         said.append(f"{y}: {each}")
     return (
         f"B: smallest drift of those tried that is found within {WITHIN} samples in {FOUND:.0%} of the runs, at one "
-        f"rate of false alarms [thresholds a sample]: {'; '.join(said)}. What is foretold from the last measurement shows a "
-        "drift only as long as it is not learned: below a threshold a sample the next window already has it in it, as "
-        "the paper says. A filter that knows the arm adds it up. So does the trained network for y2, whose motion it "
+        f"rate of false alarms [thresholds a sample]: {'; '.join(said)}. What is foretold from the last measurement "
+        "shows a drift only as long as it is not learned: below a threshold a sample the next window already has it in "
+        "it, as the paper says. A filter that knows the arm adds it up. So does the trained network for y2, whose motion it "
         "has learned by heart, and not for y4, of which it is told where it is by nothing but y4.",
     )
 
