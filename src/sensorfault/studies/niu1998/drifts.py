@@ -130,13 +130,7 @@ def smallest(numbers: Numbers, condition: str, method: str, rates: tuple[float, 
     """The smallest drift from which on all faster ones are found in FOUND of the runs; NaN if there is none."""
     found = float("nan")
     for rate in sorted(rates, reverse=True):
-        if numbers.mean(condition, method, "detection_rate", "drift", rate) < FOUND:
+        if not numbers.mean(condition, method, "detection_rate", "drift", rate) >= FOUND:
             break
         found = rate
     return found
-
-
-def in_order(setting: Setting) -> tuple[float, ...]:
-    """Thresholds of y2 and y4 by the paper's rule."""
-    limit = theta(setting)
-    return tuple(float(limit[column]) for column in COLUMNS)

@@ -95,7 +95,7 @@ def _fault(kind: str, size: float, log: Log, column: int, unit: float, rng: np.r
         "scale": size,
         "delay": size * tick_s,
     }.get(kind, 0.0)
-    lasting = 0.0 if kind == "short" else LASTING * tick_s
+    lasting = 0.0 if kind == "short" else (LASTING - 0.5) * tick_s
     return Fault(kind, channel.sensor, channel.name, float(log.time[ONSET]), lasting, magnitude)
 
 

@@ -107,8 +107,8 @@ def _slow(run: Drifts, effort: Effort) -> tuple[str, ...]:
         f"B: smallest drift of those tried that is found within {WITHIN} samples in {FOUND:.0%} of the runs, at one "
         f"rate of false alarms [thresholds a sample]: {'; '.join(said)}. What is foretold from the last measurement "
         "shows a drift only as long as it is not learned: below a threshold a sample the next window already has it in "
-        "it, as the paper says. A filter that knows the arm adds it up. So does the trained network for y2, whose motion it "
-        "has learned by heart, and not for y4, of which it is told where it is by nothing but y4.",
+        "it, as the paper says. A filter that knows the arm adds it up. So does the trained network for y2, whose "
+        "motion it has learned by heart, and not for y4, of which it is told where it is by nothing but y4.",
     )
 
 
