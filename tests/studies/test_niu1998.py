@@ -257,7 +257,7 @@ def test_a_miss_is_unknown_all_the_while() -> None:
 
 
 def test_both_drifts_are_found_at_once_by_the_network() -> None:
-    """Must, as printed: 95 % found at 51 or 52, 95 % without an early alarm; one-step error of the joint rates 0.007 rad/s
+    """Must, as printed: 95 % found at 51 or 52, 95 % without an early alarm; one-step error of the rates 0.007 rad/s
     with noise, 0.003 without.
     """
     limit = theta(AS_PRINTED)

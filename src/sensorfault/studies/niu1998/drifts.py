@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.model import Model
-from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL, Setting
+from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL
 from sensorfault.studies.findings import Effort, Row
 from sensorfault.studies.niu1998.fleet import Told, watch, with_limits
 from sensorfault.studies.niu1998.numbers import Numbers
