@@ -18,6 +18,7 @@ from sensorfault.stage import Stage
 from sensorfault.training.limits import tail_limit
 
 PER_HOUR = 1.0  # false alarms promised, of all channels together
+BLOCK = 50  # ticks: alarms in one block count once
 HORIZON = 50  # ticks for which a stand-in is believed
 
 
@@ -43,7 +44,7 @@ def healthy(log: Log, residual: Stage[Any, Any, Any, Any]) -> tuple[Float[np.nda
     tested = np.isfinite(score)
     square = np.where(tested, score**2, 0.0).sum(axis=0) / np.maximum(tested.sum(axis=0), 1)
     sigma = np.where(tested.any(axis=0), np.sqrt(square), 1.0)
-    return tail_limit(score, log.period_s, PER_HOUR / len(log.channels)), sigma
+    return tail_limit(score, log.period_s, PER_HOUR / len(log.channels), BLOCK * log.period_s), sigma
 
 
 def model(

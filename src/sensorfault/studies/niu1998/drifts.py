@@ -96,7 +96,8 @@ def _judge(told: Drifts, name: str, rival: Rival, watched: Watched) -> None:
 
 def _errors(numbers: Numbers, condition: str, rival: Rival, watched: Watched) -> None:
     """One-step errors of both joint rates and of y2 alone where nothing lies, with the sensors' noise and without."""
-    for words, logs in ((condition, watched.healthy()), (f"{condition} noise-free", watched.healthy(0.0))):
+    runs = {condition: watched.healthy(), f"{condition} noise-free": watched.healthy(0.0)}
+    for words, logs in runs.items():
         seen = watch(watched.deaf, logs)
         errors = {"rms": increment_error(seen), "rms_y2": increment_error(seen, (COLUMNS[0],))}
         numbers.add(words, rival.method, errors)

@@ -7,6 +7,7 @@ from jaxtyping import Float, Int
 
 from sensorfault.studies.findings import Figure, Json, Row
 from sensorfault.studies.niu1998.drifts import AT_RATE, NAMES, Drifts
+from sensorfault.studies.niu1998.fleet import Told
 from sensorfault.studies.niu1998.joints import PATHS
 from sensorfault.studies.niu1998.rivals import NETWORK, SCRATCH
 from sensorfault.studies.niu1998.run import COLUMNS, ONSET, WITHIN
@@ -24,7 +25,7 @@ def of_the_run(told: Drifts) -> tuple[Figure, ...]:
 
 def _prediction(told: Drifts, i: int) -> Figure:
     y, column = NAMES[i], COLUMNS[i]
-    lines = [_line(f"expected, {name}", told.shown[key][0].expected[0, :, column]) for key, name in NETWORKS.items()]
+    lines = [_line(f"expected, {name}", _expected(told.shown[key][0], column)) for key, name in NETWORKS.items()]
     value = told.shown[next(iter(NETWORKS))][1][0, :, column]
     plot: Json = {"data": [_line("measured", value), *lines], "layout": _axes(f"{y} [{UNITS[y]}]")}
     caption = (
@@ -32,6 +33,12 @@ def _prediction(told: Drifts, i: int) -> Figure:
         "networks stop learning and go on by themselves."
     )
     return Figure(f"b_prediction_{y}", f"Prediction and measurement of {y}", caption, plot)
+
+
+def _expected(told: Told, column: int) -> Float[np.ndarray, " T"]:
+    """From the second sample on: at the first nothing is known."""
+    after = np.arange(told.expected.shape[1]) > 0
+    return np.where(after, told.expected[0, :, column], np.nan)
 
 
 def _residual(told: Drifts, i: int) -> Figure:
@@ -89,7 +96,7 @@ def of_isolation(accused: Int[np.ndarray, "12 13"]) -> Figure:
     share = accused / np.maximum(accused.sum(axis=1, keepdims=True), 1)
     names = [path.split(".")[0] for path in PATHS]
     heat: Json = {"type": "heatmap", "x": [*names, "nobody"], "y": names, "z": share.round(3).tolist(), "zmin": 0,
-                  "zmax": 1, "colorscale": "Blues"}  # fmt: skip
+                  "zmax": 1, "colorscale": "Blues", "reversescale": True}  # fmt: skip
     layout = {
         "xaxis": {"title": {"text": "accused"}},
         "yaxis": {"title": {"text": "faulty"}, "autorange": "reversed"},
