@@ -20,7 +20,7 @@ from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
-from sensorfault.simulation import arm
+from sensorfault.simulation.arm import PERIOD_S, run
 from sensorfault.simulation.road import drive
 from sensorfault.training.gradient import Plan
 from sensorfault.training.session import Session
@@ -105,11 +105,11 @@ def bicycle() -> Case:
 
 def two_links() -> Case:
     """The filter of a two-joint arm."""
-    monitor = METHODS["arm-kalman"].build(arm.run(seed=1), 0, Session()).monitor
-    log = arm.run(seed=2, samples=400)
+    monitor = METHODS["arm-kalman"].build(run(seed=1), 0, Session()).monitor
+    log = run(seed=2, samples=400)
     lie = np.array([0.5, 0.5, 0.5, 0.5, 0.0, 0.0])
     rows = samples(log.time, log.value, log.fresh)
-    return Case("arm-kalman", monitor, rows, lie, 5 * arm.PERIOD_S, named=(0, 1, 2, 3))
+    return Case("arm-kalman", monitor, rows, lie, 5 * PERIOD_S, named=(0, 1, 2, 3))
 
 
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from sensorfault.methods.arm_kalman import arm_kalman
 from sensorfault.model import Model
 from sensorfault.replay import replay_log
 from sensorfault.simulation.arm import AS_PRINTED, run
+from sensorfault.store import load, save
 from sensorfault.types import FAULT
 
 
@@ -37,6 +39,15 @@ def test_its_innovations_are_as_large_as_it_says() -> None:
     score = np.concatenate([np.asarray(replay_log(model().monitor, run(seed=s)).scores[0]) for s in range(20)])
     np.testing.assert_allclose(np.nanmean(score**2, axis=0), 1.0, atol=0.3)
     assert (score[np.isfinite(score)] > 3.89).sum() <= 5
+
+
+def test_saved_and_loaded_it_says_the_same(tmp_path: Path) -> None:
+    save(model(), tmp_path / "arm.sensorfault")
+    again = load(tmp_path / "arm.sensorfault")
+    one, two = (replay_log(m.monitor, run(seed=4)) for m in (model(), again))
+    np.testing.assert_array_equal(one.residual, two.residual)
+    np.testing.assert_array_equal(one.channel, two.channel)
+    assert again.summary["arm"]["a5"] == 24.6
 
 
 def test_other_logs_are_refused() -> None:
