@@ -18,6 +18,7 @@ WINDOW, ONSET, LASTING = 150, 100, 25  # ticks: of a stretch of a run, until its
 CALM = 10  # ticks before the onset in which nobody may be accused
 RATES = {"far1e-2": 1e-2, "far1e-3": 1e-3}  # share of healthy samples with any of the twelve over its limit
 SENSORS = 2 * JOINTS
+FIFTH = 5  # of the runs, the last, are another motion
 GROUPS = {"tachometers": slice(0, JOINTS), "encoders": slice(JOINTS, SENSORS), "all": slice(0, SENSORS)}
 SIZES = (3.0, 5.0, 10.0, 20.0)
 OFFSETS = ("short", "bias", "drift", "noise")  # whose size is counted in one-step errors (of a drift, a sample)
@@ -37,6 +38,13 @@ class Runs:
         """A quarter, a quarter and a half, each of all motions; those to be learned in an order by chance."""
         order = np.random.default_rng(seed).permutation(len(runs[::4]))
         return cls(tuple(runs[4 * i] for i in order), tuple(runs[2::4]), tuple(runs[1::2]))
+
+    @classmethod
+    def of_another_motion(cls, runs: Sequence[Log]) -> "Runs":
+        """Judged are the last fifth of the runs, which do what none of the others does."""
+        known = runs[: -len(runs) // FIFTH]
+        order = np.random.default_rng(0).permutation(len(known[::2]))
+        return cls(tuple(known[2 * i] for i in order), tuple(known[1::2]), tuple(runs[len(known) :]))
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Int
 
 from sensorfault.logs.table import Log
 from sensorfault.model import Model
@@ -34,62 +34,68 @@ EACH, QUICK_EACH = 8, 3  # faults of every kind and size on every sensor, for ea
 PATHS = tuple(channel.path for channel in channels(JOINTS)[:SENSORS])
 APART = PATHS[:JOINTS], PATHS[JOINTS:]  # rates are foretold without angles, angles without rates: no twin tells
 SINGLE = ("short", "bias", "jam")  # the faults by which isolation is judged
+NEW = "new-motion"
 TIMED = ("jam", "delay", "miss")
 SHOWN = "far1e-2"
 
 
 @dataclass
 class Joints:
-    """Numbers of all rivals; one-step errors of the network's first seed [SI]; whom it accused at 5 times these."""
+    """Numbers of all rivals; whom the network accused, at five times its one-step errors, for each faulty sensor."""
 
     injected: Numbers = field(default_factory=lambda: Numbers(DATA, "injected"))
     real: Numbers = field(default_factory=lambda: Numbers(DATA, "real"))
-    unit: Float[np.ndarray, " C"] = field(default_factory=lambda: np.zeros(0))
     accused: Int[np.ndarray, "12 13"] = field(default_factory=lambda: np.zeros((SENSORS, SENSORS + 1), int))
 
 
 def joints(effort: Effort) -> Joints:
-    """All rivals on the same faults.
+    """All rivals on the same faults; at last on a motion that none of them knows.
 
     Raises:
         LogError: the runs are not there.
     """
     told = Joints()
     logs = runs(real("arm") / ARCHIVE)
-    rivals = of_six_joints(APART)
-    seeds = 1 if effort.quick else effort.seeds
-    for seed in range(seeds):
-        parts = Runs.of(logs, seed)
-        other, judged = stretches(parts.other), stretches(parts.judged)
-        faults: list[Trial] = []
-        for i, rival in enumerate(rivals):
-            effort.tell(f"{rival.method} on the real arm", (seed + i / len(rivals)) / seeds)
-            own = Calibrated.of(rival.build(joined(parts.learned), seed), other)
-            if rival.method == NETWORK:
-                faults = trials(judged, own.unit, QUICK_EACH if effort.quick else EACH, seed, effort.quick)
-                told.unit = told.unit if told.unit.size else own.unit
-            _quiet(told, rival, own, judged)
-            for words, limit in own.limits.items():
-                _judge(told, words, rival, with_limits(own.deaf, limit), faults, judged)
+    splits = [("", Runs.of(logs, seed)) for seed in range(1 if effort.quick else effort.seeds)]
+    splits.append((NEW, Runs.of_another_motion(logs)))
+    for seed, (words, parts) in enumerate(splits):
+        effort.tell(f"the real arm {words}".strip(), seed / len(splits))
+        _judge(told, words, parts, seed, effort.quick)
     return told
 
 
-def _quiet(told: Joints, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
+def _judge(told: Joints, words: str, parts: Runs, seed: int, quick: bool) -> None:
+    other, judged = stretches(parts.other), stretches(parts.judged)
+    faults: list[Trial] = []
+    for rival in of_six_joints(APART):
+        own = Calibrated.of(rival.build(joined(parts.learned), seed), other)
+        if rival.method == NETWORK:
+            faults = trials(judged, own.unit, QUICK_EACH if quick else EACH, seed, quick or words == NEW)
+        _quiet(told, words, rival, own, judged)
+        for rate, limit in own.limits.items():
+            condition = f"{rate} {words}".strip()
+            _isolate(told, condition, rival, with_limits(own.deaf, limit), faults, judged)
+
+
+def _quiet(told: Joints, words: str, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
     """One-step errors, the median over six sensors; and how often a score passes its limit where nothing lies."""
-    for group, part in list(GROUPS.items())[:2]:
-        told.real.add(group, rival.method, {"rms": float(np.median(own.unit[part]))})
-    score = np.nan_to_num(watch(own.deaf, healthy).score)
-    for words, limit in own.limits.items():
-        told.real.add(words, rival.method, {"far": float((score > limit).any(axis=2).mean())})
+    score = watch(own.deaf, healthy).score
+    error = np.sqrt(np.nanmean(score[:, :, :SENSORS] ** 2, axis=(0, 1)))
+    for group in ("tachometers", "encoders"):
+        told.real.add(f"{group} {words}".strip(), rival.method, {"rms": float(np.median(error[GROUPS[group]]))})
+    for rate, limit in own.limits.items():
+        far = float((np.nan_to_num(score) > limit).any(axis=2).mean())
+        told.real.add(f"{rate} {words}".strip(), rival.method, {"far": far})
 
 
-def _judge(
+def _isolate(
     told: Joints, words: str, rival: Rival, model: Model, faults: Sequence[Trial], healthy: Sequence[Log]
 ) -> None:
     """As it runs: right isolation of every kind and size, over stretches that were calm before, with chance beside."""
     quiet = watch(model, healthy)
-    told.real.add(f"{words} as-run", rival.method, {"far": float(quiet.fault.any(axis=2).mean())})
-    chance = [np.mean(_calm(quiet, column).right) for column in range(SENSORS)]
+    far, calm = quiet.fault.any(axis=2).mean(), isolated(quiet, np.zeros(len(healthy), int)).calm.mean()
+    told.real.add(f"{words} as-run", rival.method, {"far": float(far), "calm": float(calm)})
+    chance = [_mean(_calm(quiet, column).right) for column in range(SENSORS)]
     seen = watch(model, [trial.log for trial in faults])
     column = np.array([trial.column for trial in faults])
     kinds = [(trial.kind, trial.size) for trial in faults]
