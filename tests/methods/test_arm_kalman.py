@@ -14,7 +14,7 @@ from sensorfault.logs.table import LogError
 from sensorfault.methods.arm_kalman import arm_kalman
 from sensorfault.model import Model
 from sensorfault.replay import replay_log
-from sensorfault.simulation.arm import AS_PRINTED, run
+from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL, run
 from sensorfault.store import load, save
 from sensorfault.types import FAULT
 
@@ -51,8 +51,9 @@ def test_saved_and_loaded_it_says_the_same(tmp_path: Path) -> None:
 
 
 def test_other_logs_are_refused() -> None:
-    with pytest.raises(LogError, match="not of the arm that arm-kalman knows"):
-        arm_kalman("arm-kalman", run(seed=3), AS_PRINTED.constants._replace(a4=60.0))
+    for one, other in ((AS_PRINTED, PHYSICAL), (PHYSICAL, AS_PRINTED)):  # which differ in a5, by a likely misprint
+        with pytest.raises(LogError, match="not of the arm that arm-kalman knows"):
+            arm_kalman("arm-kalman", run(one, seed=3), other.constants)
     log = run(seed=1)
     with pytest.raises(LogError, match="1 channels called torque"):
         arm_kalman("arm-kalman", log.select(channel.path for channel in log.channels[:5]))

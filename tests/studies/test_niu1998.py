@@ -206,8 +206,8 @@ def test_runs_are_for_one_thing_only() -> None:
     assert sum(len(group) for group in names) == len(set.union(*names)) == 8
     assert [len(group) for group in names] == [2, 2, 4]
     parts = Runs.of_another_motion(swinging())
-    assert [log.name for log in parts.judged] == ["measurement_6", "measurement_7"]
-    assert {log.name for log in (*parts.learned, *parts.other)} == {f"measurement_{i}" for i in range(6)}
+    assert [log.name for log in parts.judged] == ["measurement 6", "measurement 7"]
+    assert {log.name for log in (*parts.learned, *parts.other)} == {f"measurement {i}" for i in range(6)}
 
 
 def test_faults_are_as_large_as_asked() -> None:

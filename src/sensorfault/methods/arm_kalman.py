@@ -26,7 +26,7 @@ FALSE_ALARMS = 1e-4  # allowed to one sensor at one sample
 FORGETTING = 1e-3  # variance that the state gains from one sample to the next, as a share of the sensor's
 GAP = 5.5  # ticks without anything to take in after which the filter begins anew
 LEAST_ROWS = 20
-ODD = 9.0  # mean square of healthy whitened innovations that shows another arm
+ODD = 4.0  # mean square of a sensor's healthy whitened innovations that shows another arm
 
 
 def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: float = FALSE_ALARMS) -> Model:
@@ -86,7 +86,7 @@ def _sigma(name: str, log: Log, monitor: Monitor, watched: Bool[np.ndarray, " C"
     """Standard deviation of each channel's innovation, 1 where there is none; the log must be of this arm."""
     tape = replay_log(monitor, log)
     score: Float[np.ndarray, "T K"] = np.asarray(tape.scores[0])
-    if not np.isfinite(score).any() or np.nanmean(score**2) > ODD:
+    if not np.isfinite(score).any() or np.nanmean(score**2, axis=0).max() > ODD:
         raise LogError(
             f"{log.name} is not of the arm that {name} knows, or not healthy: its innovations are far larger than the "
             "noise of its sensors; take another method."

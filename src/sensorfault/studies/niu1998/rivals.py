@@ -11,15 +11,13 @@ from sensorfault.methods.catalog import METHODS
 from sensorfault.methods.online_network import Setting as Taught
 from sensorfault.model import Model
 from sensorfault.numerics.two_link import Constants
-from sensorfault.simulation.arm import AS_PRINTED as PRINTED
-from sensorfault.simulation.arm import PHYSICAL, SAMPLES
+from sensorfault.simulation.arm import SAMPLES
 from sensorfault.training.online import Learning
 from sensorfault.training.session import SILENT
 
 NETWORK, KALMAN = "online-network", "arm-kalman"
 PLAIN = ("persistence", "linear-extrapolation")
 SCRATCH, AS_PRINTED = "scratch", "scratch absolute"
-MISTAKEN = "other-a5"
 FAST = 0.3  # learning rate of what knows nothing and has 50 samples
 VARIANTS = {  # of the network, by what a row's condition calls it
     "": Learning(),
@@ -40,16 +38,12 @@ class Rival:
 
 
 def of_two_links(arm: Constants, theta: Mapping[str, float]) -> tuple[Rival, ...]:
-    """On the paper's arm, whose constants one filter knows and another has with the other a5; `theta`: the paper's
-    thresholds, by path.
-    """
+    """On the paper's arm, whose constants the filter knows; `theta`: the paper's thresholds, by path."""
     networks = (
         Rival(NETWORK, variant, partial(_network, setting=Taught(learning, theta=theta, horizon=SAMPLES)))
         for variant, learning in VARIANTS.items()
     )
-    other = arm._replace(a5=(PHYSICAL if arm.a5 == PRINTED.constants.a5 else PRINTED).constants.a5)
-    filters = (Rival(KALMAN, name, partial(_filter, arm=known)) for name, known in (("", arm), (MISTAKEN, other)))
-    return (*networks, *_plain(), *filters)
+    return (*networks, *_plain(), Rival(KALMAN, "", lambda log, seed: arm_kalman(KALMAN, log, arm)))
 
 
 def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
@@ -60,10 +54,6 @@ def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
 
 def _network(log: Log, seed: int, setting: Taught) -> Model:
     return online_network.build(log, seed, SILENT, setting)
-
-
-def _filter(log: Log, seed: int, arm: Constants) -> Model:
-    return arm_kalman(KALMAN, log, arm)
 
 
 def _plain() -> tuple[Rival, ...]:
