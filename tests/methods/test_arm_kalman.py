@@ -21,7 +21,7 @@ from sensorfault.types import FAULT
 
 @cache
 def model() -> Model:
-    return arm_kalman("arm-kalman", run(seed=1000))
+    return arm_kalman("arm-kalman", run(seed=1000, samples=500))
 
 
 def test_the_papers_two_drifts_at_once() -> None:

@@ -41,7 +41,7 @@ class Setting:
     learning: Learning = field(default_factory=Learning)
     groups: tuple[tuple[str, ...], ...] = ()
     theta: Mapping[str, float] = field(default_factory=dict)
-    horizon: int = 50
+    horizon: int = 10
 
 
 def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:

@@ -10,6 +10,8 @@ from sensorfault.numerics.networks.dense import Mlp
 from sensorfault.numerics.networks.online import taught
 from sensorfault.types import NEVER, Residual, Sample, Trust
 
+MOST = 2.0  # of what the network sees
+
 
 class _State(NamedTuple):
     network: Mlp
@@ -106,7 +108,10 @@ class OnlineNetwork(eqx.Module):
         state, x, inputs, expected, now = pending
         m, n = self.delays
         measured, filled = _of(trust.measured, self.columns), _of(trust.filled, self.columns)
-        y = jnp.where(measured | filled, _of(trust.value, self.columns), state.outputs[0])
+        d = len(self.columns)
+        # Of an output that is not there the others must still know something: what was foretold, within its range.
+        foretold = jnp.clip(expected, self.center[:d] - self.half[:d], self.center[:d] + self.half[:d])
+        y = jnp.where(measured | filled, _of(trust.value, self.columns), foretold)
         target, teaches = self.lesson(pending, trust)
         _, unit = self._origin(state)
         network = taught(state.network, x, target, teaches, self.tolerance / unit, self.rate, self.iterations)
@@ -134,12 +139,15 @@ class OnlineNetwork(eqx.Module):
         return (_of(trust.value, self.columns) - origin) / unit, allowed & whole
 
     def _seen(self, outputs: Float[Array, "m D"], inputs: Float[Array, "p U"]) -> Float[Array, " N"]:
-        """What the network sees: the newest outputs, the increments before them, the inputs; all about 1 at most."""
+        """What the network sees: the newest outputs, the increments before them, the inputs.
+
+        All lie within 1 in health; what is farther out than MOST says no more than MOST would.
+        """
         d = len(self.columns)
         y = (outputs[0] - self.center[:d]) / self.half[:d]
         before = (outputs[:-1] - outputs[1:]) / self.step[None]
         u = (inputs - self.center[None, d:]) / self.half[None, d:]
-        return jnp.concatenate([y, before.ravel(), u.ravel()])
+        return jnp.clip(jnp.concatenate([y, before.ravel(), u.ravel()]), -MOST, MOST)
 
     def _origin(self, state: _State) -> tuple[Float[Array, " D"], Float[Array, " D"]]:
         """What the network's answer counts from, and in which unit [SI]."""
