@@ -13,7 +13,7 @@ from sensorfault.logs.table import Log
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import fleet, samples
+from sensorfault.run import fleet
 from sensorfault.types import FAULT, Report, Sample
 
 BATCH = 128  # logs at once: one compilation for any number of them
@@ -48,7 +48,9 @@ def watch(model: Model, logs: Sequence[Log]) -> Told:
     for start in range(0, len(logs), BATCH):
         some = [logs[min(i, len(logs) - 1)] for i in range(start, start + BATCH)]
         value, fresh, time = (np.stack([getattr(log, name) for log in some]) for name in ("value", "fresh", "time"))
-        kept.append([np.asarray(x) for x in _watch(model.monitor, samples(time, value, fresh))])
+        present = np.isfinite(value)
+        rows = Sample(*(jnp.asarray(x) for x in (time, value, present, fresh & present, np.zeros_like(present))))
+        kept.append([np.asarray(x) for x in _watch(model.monitor, rows)])
     parts = zip(*kept, strict=True)
     channel, scores, limits, residual, expected = (np.concatenate(part)[: len(logs)] for part in parts)
     score, limit = np.full(channel.shape, np.nan), np.full(channel.shape[2], np.nan)
