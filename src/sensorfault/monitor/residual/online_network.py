@@ -79,11 +79,12 @@ class OnlineNetwork(eqx.Module):
         m, n = self.delays
         away = sample.time - state.time
         gone = (away > self.gap_s) | (away <= 0)
+        anew = gone | _of(sample.born, self.columns)
         there = _of(sample.present, self.driven).all()
         state = state._replace(
-            known=jnp.where(gone | _of(sample.born, self.columns), 0.0, state.known),
+            known=jnp.where(anew, 0.0, state.known),
             heard=jnp.where(there, jnp.minimum(jnp.where(gone, 0.0, state.heard), n) + 1, 0.0),
-            clean=jnp.where(gone, 0.0, state.clean),
+            clean=jnp.where(anew.any(), 0.0, state.clean),
         )
         inputs = jnp.concatenate([_of(sample.value, self.driven)[None], state.inputs])
         x = self._seen(state.outputs, inputs)
@@ -135,7 +136,7 @@ class OnlineNetwork(eqx.Module):
         origin, unit = self._origin(state)
         unjudged = state.quiet < self.warm
         allowed = _of(trust.learn, self.columns) | (unjudged & _of(trust.measured, self.columns))
-        whole = (state.clean >= m) & (state.known >= m) & (state.heard > n)
+        whole = (state.clean >= m) & (state.heard > n)
         return (_of(trust.value, self.columns) - origin) / unit, allowed & whole
 
     def _seen(self, outputs: Float[Array, "m D"], inputs: Float[Array, "p U"]) -> Float[Array, " N"]:
