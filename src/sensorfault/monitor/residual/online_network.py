@@ -79,17 +79,18 @@ class OnlineNetwork(eqx.Module):
         m, n = self.delays
         away = sample.time - state.time
         gone = (away > self.gap_s) | (away <= 0)
+        anew = gone | _of(sample.born, self.columns)
         there = _of(sample.present, self.driven).all()
         state = state._replace(
-            known=jnp.where(gone | _of(sample.born, self.columns), 0.0, state.known),
+            known=jnp.where(anew, 0.0, state.known),
             heard=jnp.where(there, jnp.minimum(jnp.where(gone, 0.0, state.heard), n) + 1, 0.0),
-            clean=jnp.where(gone, 0.0, state.clean),
+            clean=jnp.where(anew.any(), 0.0, state.clean),
         )
         inputs = jnp.concatenate([_of(sample.value, self.driven)[None], state.inputs])
         x = self._seen(state.outputs, inputs)
         # (1) y~(k+1) = F(y(k) .. y(k-m+1), u(k+1) .. u(k-n+1))
         origin, unit = self._origin(state)
-        expected = origin + unit * state.network(x)
+        expected = origin + unit * state.network(x[None])
         ready = (state.known >= m) & (state.heard > n) & (state.quiet >= self.warm)
         nothing = jnp.zeros_like(sample.value)
         residual = Residual(
@@ -135,7 +136,7 @@ class OnlineNetwork(eqx.Module):
         origin, unit = self._origin(state)
         unjudged = state.quiet < self.warm
         allowed = _of(trust.learn, self.columns) | (unjudged & _of(trust.measured, self.columns))
-        whole = (state.clean >= m) & (state.known >= m) & (state.heard > n)
+        whole = (state.clean >= m) & (state.heard > n)
         return (_of(trust.value, self.columns) - origin) / unit, allowed & whole
 
     def _seen(self, outputs: Float[Array, "m D"], inputs: Float[Array, "p U"]) -> Float[Array, " N"]:
