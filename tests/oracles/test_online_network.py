@@ -207,12 +207,19 @@ def test_a_drift_is_never_learned_and_learning_goes_on_after_it() -> None:
 
 def test_no_lesson_reaches_across_a_hole_or_a_gap() -> None:
     rows = system()
-    with_holes, moved = walk(monitor(), rows), np.asarray(rows.value).copy()
-    for closed in (slice(101, 103 + M), slice(125, 125 + M)):  # a hole of three rows; a gap in the clock
-        assert not learned(with_holes)[closed].any()
-        assert learned(with_holes)[closed.stop]
-    moved[125:, [0, 2]] += 0.05  # the arm moved while nobody looked
-    assert not (walk(monitor(), rows._replace(value=moved)).channel[125:, [0, 2]] == FAULT).any()
+    early = rows._replace(time=np.asarray(rows.time) + np.where(np.arange(ROWS) >= 6, 1.0, 0.0))  # not yet judged
+    for log, closed in (
+        (rows, slice(101, 103 + M)),  # a hole of three rows
+        (rows, slice(125, 125 + M)),  # a gap in the clock
+        (early, slice(6, 6 + M)),
+    ):
+        lessons = learned(walk(monitor(), log))
+        assert lessons[closed.start - 2]
+        assert not lessons[closed].any()
+        assert lessons[closed.stop]
+    value = np.asarray(rows.value).copy()
+    value[125:, [0, 2]] += 0.05  # the arm moved while nobody looked
+    assert not (walk(monitor(), rows._replace(value=value)).channel[125:, [0, 2]] == FAULT).any()
 
 
 def test_a_fault_before_it_has_learned_is_unknown() -> None:
