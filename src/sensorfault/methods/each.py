@@ -19,17 +19,19 @@ from sensorfault.training.limits import tail_limit
 
 PER_HOUR = 1.0  # false alarms promised, of all channels together
 BLOCK = 50  # ticks: alarms in one block count once
-HORIZON = 50  # ticks for which a stand-in is believed
+HORIZON = 10  # ticks for which a stand-in is believed
 
 
-def monitor(log: Log, residual: Stage[Any, Any, Any, Any], theta: Float[np.ndarray, " C"]) -> Monitor:
+def monitor(
+    log: Log, residual: Stage[Any, Any, Any, Any], theta: Float[np.ndarray, " C"], horizon: int = HORIZON
+) -> Monitor:
     """Limits `theta` [SI], one a channel; all that are over theirs are named at once, and out for that sample."""
     channels = len(log.channels)
     return Monitor(
         residual=residual,
         branches=(Branch(Absolute(), Fixed(jnp.asarray(theta))),),
         decision=Exceed(),
-        recovery=Rebuild(jnp.asarray(HORIZON * log.period_s), jnp.asarray(log.period_s / 2), channels),
+        recovery=Rebuild(jnp.asarray(horizon * log.period_s), jnp.asarray(log.period_s / 2), channels),
         hold_s=jnp.asarray(hold_s(log)),
         owner=owners(log.channels, log.sensors),
     )
@@ -54,11 +56,13 @@ def model(
     theta: Float[np.ndarray, " C"],
     sigma: Float[np.ndarray, " C"],
     told: dict[str, Any],
+    horizon: int = HORIZON,
 ) -> Model:
-    """The model with these limits."""
+    """The model with these limits; a channel whose limit is infinite is not watched."""
     paths = [channel.path for channel in log.channels]
     tests = tuple(("absolute", path) for path in paths)
     watched = tuple(np.isfinite(theta).tolist())
-    told = {"training_log": log.name, "training_s": log.duration_s, **told}
-    own = monitor(log, residual, theta)
+    limits = {path: float(limit) for path, limit in zip(paths, theta, strict=True) if np.isfinite(limit)}
+    told = {"training_log": log.name, "training_s": log.duration_s, "limits": limits, **told}
+    own = monitor(log, residual, theta, horizon)
     return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(sigma.tolist()), told)

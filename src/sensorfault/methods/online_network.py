@@ -5,28 +5,20 @@ from dataclasses import dataclass, field, replace
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
 
 from sensorfault.logs.table import Log
+from sensorfault.methods import each
 from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
-from sensorfault.model import Model, hold_s, owners
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.model import Model
 from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.several import Several
-from sensorfault.monitor.statistic.absolute import Absolute
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.replay import Replayed, replay_log
-from sensorfault.training.limits import tail_limit
 from sensorfault.training.online import Learning, learner, untaught
 from sensorfault.training.session import Session
 
 NAME = "online-network"
 OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
 TAUGHT = 0.7  # of the healthy log; the limits come from the rest
-PER_HOUR = 1.0  # false alarms promised, shared by the channels
 
 
 @dataclass(frozen=True)
@@ -41,7 +33,7 @@ class Setting:
     learning: Learning = field(default_factory=Learning)
     groups: tuple[tuple[str, ...], ...] = ()
     theta: Mapping[str, float] = field(default_factory=dict)
-    horizon: int = 10
+    horizon: int = each.HORIZON
 
 
 def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
@@ -64,25 +56,17 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
             learner(log.between(end_s=cut), columns, driven, setting.learning, seed, replace(session, checkpoint=None))
         )
     session.tell("measuring what they leave")
-    tape = replay_log(_monitor(log, networks, np.full(len(paths), np.inf), setting), log.between(cut))
-    sigma = _spread(tape)
-    theta = tail_limit(np.asarray(tape.scores[0]), log.period_s, PER_HOUR / len(paths))
+    theta, sigma = each.healthy(log.between(cut), _side_by_side(networks, len(paths)))
     theta = np.array([setting.theta.get(path, limit) for path, limit in zip(paths, theta, strict=True)])
     networks = [replace(one, cov=jnp.diag(jnp.asarray(sigma**2))) for one in networks]
     if setting.learning.scratch:
         networks = [untaught(one, theta, setting.learning.warm, seed) for one in networks]
     told = {
-        "training_log": log.name,
-        "training_s": log.duration_s,
         "rows": int(training.rows.sum()),
         "not_watched": training.reasons,
         "inputs": [paths[i] for i in driven],
-        "limits": dict(zip(paths, theta.tolist(), strict=True)),
     }
-    monitor = _monitor(log, networks, theta, setting)
-    tests = tuple(("absolute", path) for path in paths)
-    watched = tuple(any(c in one.columns for one in networks) for c in range(len(paths)))
-    return Model(NAME, monitor, log.channels, log.sensors, tests, watched, log.period_s, tuple(sigma.tolist()), told)
+    return each.model(NAME, log, _side_by_side(networks, len(paths)), theta, sigma, told, setting.horizon)
 
 
 def _driven(log: Log) -> tuple[int, ...]:
@@ -95,32 +79,16 @@ def _driven(log: Log) -> tuple[int, ...]:
     )
 
 
-def _monitor(log: Log, networks: Sequence[OnlineNetwork], theta: Float[np.ndarray, " C"], setting: Setting) -> Monitor:
-    """The networks side by side, each channel judged by itself; a channel over its limit is out for that sample."""
-    channels = len(log.channels)
+def _side_by_side(networks: Sequence[OnlineNetwork], channels: int) -> OnlineNetwork | Several:
+    """One residual, each network answering for its own outputs."""
     answers = np.array([[c in one.columns for c in range(channels)] for one in networks])
-    return Monitor(
-        residual=networks[0] if len(networks) == 1 else Several(tuple(networks), jnp.asarray(answers)),
-        branches=(Branch(Absolute(), Fixed(jnp.asarray(theta))),),
-        decision=Exceed(),
-        recovery=Rebuild(jnp.asarray(setting.horizon * log.period_s), jnp.asarray(log.period_s / 2), channels),
-        hold_s=jnp.asarray(hold_s(log)),
-        owner=owners(log.channels, log.sensors),
-        most=0,
-    )
-
-
-def _spread(tape: Replayed) -> Float[np.ndarray, " C"]:
-    """Root mean square of each channel's healthy residual [SI]; 1 for one that has none."""
-    valid = np.asarray(tape.valid)
-    square = np.where(valid, np.asarray(tape.residual) ** 2, 0.0).sum(axis=0)
-    return np.where(valid.any(axis=0), np.sqrt(square / np.maximum(valid.sum(axis=0), 1)), 1.0)
+    return networks[0] if len(networks) == 1 else Several(tuple(networks), jnp.asarray(answers))
 
 
 RECIPE = Recipe(
     name=NAME,
     title="Each sensor foretold one sample ahead by a network that learns while it watches, one limit a sensor",
     source="Niu & Zhao 1998",
-    promise=f"{PER_HOUR:g} false alarm an hour in all, from the tail of the healthy residual",
+    promise=f"{each.PER_HOUR:g} false alarm an hour in all, from the tail of the healthy residual",
     build=build,
 )

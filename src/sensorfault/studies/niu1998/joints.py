@@ -36,7 +36,7 @@ APART = PATHS[:JOINTS], PATHS[JOINTS:]  # rates are foretold without angles, ang
 SINGLE = ("short", "bias", "jam")  # the faults by which isolation is judged
 NEW = "new-motion"
 TIMED = ("jam", "delay", "miss")
-SHOWN = "far1e-2"
+SHOWN, ALL = "far1e-2", "all"
 
 
 @dataclass
@@ -100,9 +100,14 @@ def _isolate(
     column = np.array([trial.column for trial in faults])
     kinds = [(trial.kind, trial.size) for trial in faults]
     became, silent = isolated(seen, column), missed(seen, column)
+    groups = GROUPS if words == SHOWN else {ALL: GROUPS[ALL]}
+    five = np.array([kind in SINGLE and (kind == "jam" or size == 5.0) for kind, size in kinds]) & became.calm
+    told.injected.add(
+        f"{words} {ALL}", rival.method, {"detection_rate": _mean(became.right[five])}, " or ".join(SINGLE)
+    )
     for kind, size in dict.fromkeys(kinds):
         mine = np.array([one == (kind, size) for one in kinds]) & became.calm
-        for group, part in GROUPS.items():
+        for group, part in groups.items():
             rows = mine & np.isin(column, np.arange(SENSORS)[part])
             right = silent if kind == "miss" else became.right
             numbers = {"detection_rate": _mean(right[rows]), "chance": float(np.mean(chance[part]))}
@@ -113,7 +118,6 @@ def _isolate(
                 numbers["delay_steps"] = float(np.median(delay)) if delay.size else float("nan")
             told.injected.add(f"{words} {group}", rival.method, numbers, kind, _size(kind, size))
     if rival.method == NETWORK and words == SHOWN:
-        five = np.array([kind in SINGLE and (kind == "jam" or size == 5.0) for kind, size in kinds]) & became.calm
         for i in np.flatnonzero(five):
             told.accused[column[i], :SENSORS] += became.named[i]
             told.accused[column[i], SENSORS] += not became.named[i].any()

@@ -2,11 +2,12 @@
 
 from math import isfinite
 
+from sensorfault.methods.each import HORIZON
 from sensorfault.studies.findings import Effort
 from sensorfault.studies.niu1998.drifts import AT_RATE, FAST, FOUND, NAMES, QUICK, SETTINGS, SLOWER, Drifts, smallest
 from sensorfault.studies.niu1998.isolation import LASTING
-from sensorfault.studies.niu1998.joints import EACH, NEW, SHOWN, SINGLE, Joints
-from sensorfault.studies.niu1998.rivals import AS_PRINTED, BELIEVED, KALMAN, NETWORK, PLAIN, SCRATCH
+from sensorfault.studies.niu1998.joints import EACH, NEW, QUICK_EACH, SHOWN, SINGLE, Joints
+from sensorfault.studies.niu1998.rivals import AS_PRINTED, KALMAN, NETWORK, PLAIN, SCRATCH
 from sensorfault.studies.niu1998.run import ONSET, RUNS, SENSORS, WITHIN
 from sensorfault.studies.niu1998.schunk import PERIOD_S
 
@@ -34,10 +35,10 @@ def _start(run: Drifts) -> str:
 
 
 def _seeds(effort: Effort) -> str:
-    seeds = 1 if effort.quick else effort.seeds
+    seeds, each = (1, QUICK_EACH) if effort.quick else (effort.seeds, EACH)
     return (
         f"B: a seed is a network (its first weights), the healthy runs that it is fitted on and {RUNS} noisy runs that "
-        f"it is judged on, {seeds * RUNS} runs in all; on the real arm {EACH} faults of each kind and size on each "
+        f"it is judged on, {seeds * RUNS} runs in all; on the real arm {each} faults of each kind and size on each "
         f"sensor. {AT_RATE}: limits that 5 % of other healthy runs pass before sample {ONSET}; far: share of runs with "
         "an alarm before it; detection_rate: share with both drifts found at sample 51 or 52; untested: share of the "
         "samples before it in which the four sensors are unknown."
@@ -118,7 +119,8 @@ def _real(arm: Joints) -> tuple[str, ...]:
         return arm.injected.mean(f"{words} {group}", method, "detection_rate", kind, FIVE[kind])
 
     def each(words: str) -> str:
-        return ", ".join(f"{kind} {rate(words, NETWORK, kind):.0%}" for kind in SINGLE)
+        pooled = arm.injected.mean(f"{words} all", NETWORK, "detection_rate", " or ".join(SINGLE))
+        return ", ".join(f"{kind} {rate(words, NETWORK, kind):.1%}" for kind in SINGLE) + f", together {pooled:.1%}"
 
     line = ", ".join(
         f"{group} {sum(rate(SHOWN, EXTRAPOLATION, kind, group) for kind in SINGLE) / len(SINGLE):.0%}"
@@ -139,7 +141,7 @@ def _real(arm: Joints) -> tuple[str, ...]:
         f"B, schunk: right isolation among twelve sensors at five one-step errors, with {far[SHOWN]:.1%} of healthy "
         f"samples with anybody over his limit: {each(SHOWN)}; with {far[HARDER]:.2%}: {each(HARDER)}. One in a hundred "
         "samples is far too often for a product; what such a limit costs is printed as as-run: a false alarm puts the "
-        f"network on its own for {BELIEVED} samples, and its errors accuse others, so that "
+        f"network on its own for {HORIZON} samples, and its errors accuse others, so that "
         f"{far[f'{SHOWN} as-run']:.0%} and {far[f'{HARDER} as-run']:.0%} of healthy samples have somebody accused.",
         f"B, schunk: linear extrapolation isolates {line} of the same faults at the same rate of false alarms: angles "
         "are written with five digits, and a straight line is about as good as that; rates turn with the torques, "

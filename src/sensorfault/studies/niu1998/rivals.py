@@ -25,7 +25,6 @@ VARIANTS = {  # of the network, by what a row's condition calls it
     AS_PRINTED: Learning(scratch=True, rate=FAST, absolute=True),
 }
 DEEP = Learning(hidden=20, delays=(4, 1))  # for six joints
-BELIEVED = 10  # ticks for which a stand-in is believed on the real arm
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ def of_two_links(arm: Constants, theta: Mapping[str, float]) -> tuple[Rival, ...
 
 def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
     """On the real arm, of which there is no model; `groups`: paths that are foretold apart from the others."""
-    setting = Taught(DEEP, groups=groups, horizon=BELIEVED)
+    setting = Taught(DEEP, groups=groups)
     return (Rival(NETWORK, "", partial(_network, setting=setting)), *_plain())
 
 
