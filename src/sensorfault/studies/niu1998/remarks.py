@@ -122,10 +122,11 @@ def _real(arm: Joints) -> tuple[str, ...]:
         pooled = arm.injected.mean(f"{words} all", NETWORK, "detection_rate", " or ".join(SINGLE))
         return ", ".join(f"{kind} {rate(words, NETWORK, kind):.1%}" for kind in SINGLE) + f", together {pooled:.1%}"
 
-    line = ", ".join(
-        f"{group} {sum(rate(SHOWN, EXTRAPOLATION, kind, group) for kind in SINGLE) / len(SINGLE):.0%}"
-        for group in ("tachometers", "encoders")
-    )
+    def halves(method: str) -> str:
+        groups = ("tachometers", "encoders")
+        share = (sum(rate(SHOWN, method, kind, group) for kind in SINGLE) / len(SINGLE) for group in groups)
+        return ", ".join(f"{group} {part:.0%}" for group, part in zip(groups, share, strict=True))
+
     far = {
         words: arm.real.mean(words, NETWORK, "far")
         for rate in (SHOWN, HARDER)
@@ -143,9 +144,10 @@ def _real(arm: Joints) -> tuple[str, ...]:
         "samples is far too often for a product; what such a limit costs is printed as as-run: a false alarm puts the "
         f"network on its own for {HORIZON} samples, and its errors accuse others, so that "
         f"{far[f'{SHOWN} as-run']:.0%} and {far[f'{HARDER} as-run']:.0%} of healthy samples have somebody accused.",
-        f"B, schunk: linear extrapolation isolates {line} of the same faults at the same rate of false alarms: angles "
-        "are written with five digits, and a straight line is about as good as that; rates turn with the torques, "
-        "which only the network sees. Of this arm there is no model, so the Kalman filter cannot run here.",
+        f"B, schunk: of the same faults at the same rate of false alarms the network isolates {halves(NETWORK)}, linear "
+        f"extrapolation {halves(EXTRAPOLATION)}: angles are written with five digits, below which nobody sees; rates "
+        "turn with the torques, which only the network is told. Of this arm there is no model, so the Kalman filter "
+        "cannot run here.",
         f"B, schunk, {NEW}: learned and limited on the one motion, judged on the other, the network's scores pass the "
         f"limits of {SHOWN} in {far[f'{SHOWN} {NEW}']:.0%} of the healthy samples, those of {HARDER} in "
         f"{far[f'{HARDER} {NEW}']:.0%}; of the stretches that are calm it isolates {each(f'{SHOWN} {NEW}')}. The "
