@@ -144,10 +144,10 @@ def _real(arm: Joints) -> tuple[str, ...]:
         "samples is far too often for a product; what such a limit costs is printed as as-run: a false alarm puts the "
         f"network on its own for {HORIZON} samples, and its errors accuse others, so that "
         f"{far[f'{SHOWN} as-run']:.0%} and {far[f'{HARDER} as-run']:.0%} of healthy samples have somebody accused.",
-        f"B, schunk: of the same faults at the same rate of false alarms the network isolates {halves(NETWORK)}, linear "
-        f"extrapolation {halves(EXTRAPOLATION)}: angles are written with five digits, below which nobody sees; rates "
-        "turn with the torques, which only the network is told. Of this arm there is no model, so the Kalman filter "
-        "cannot run here.",
+        f"B, schunk: of the same faults, at the same rate of false alarms, the network isolates {halves(NETWORK)}, "
+        f"linear extrapolation {halves(EXTRAPOLATION)}: angles are written with five digits, below which nobody sees; "
+        "rates turn with the torques, which only the network is told. Of this arm there is no model, so the Kalman "
+        "filter cannot run here.",
         f"B, schunk, {NEW}: learned and limited on the one motion, judged on the other, the network's scores pass the "
         f"limits of {SHOWN} in {far[f'{SHOWN} {NEW}']:.0%} of the healthy samples, those of {HARDER} in "
         f"{far[f'{HARDER} {NEW}']:.0%}; of the stretches that are calm it isolates {each(f'{SHOWN} {NEW}')}. The "
