@@ -1,10 +1,10 @@
 """The experiment on the real arm: what each method finds and lays at the right door, at one rate of false alarms."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool, Int
+from jaxtyping import Bool, Float, Int
 
 from sensorfault.logs.table import Log
 from sensorfault.model import Model
@@ -16,7 +16,6 @@ from sensorfault.studies.niu1998.isolation import (
     GROUPS,
     SENSORS,
     Calibrated,
-    Isolated,
     Runs,
     Trial,
     isolated,
@@ -95,27 +94,23 @@ def _isolate(
     quiet = watch(model, healthy)
     far, calm = quiet.fault.any(axis=2).mean(), isolated(quiet, np.zeros(len(healthy), int)).calm.mean()
     told.real.add(f"{words} as-run", rival.method, {"far": float(far), "calm": float(calm)})
-    chance = [_mean(_calm(quiet, column).right) for column in range(SENSORS)]
+    chance = np.array([_chance(quiet, column) for column in range(SENSORS)])
     seen = watch(model, [trial.log for trial in faults])
     column = np.array([trial.column for trial in faults])
-    kinds = [(trial.kind, trial.size) for trial in faults]
     became, silent = isolated(seen, column), missed(seen, column)
-    groups = GROUPS if words == SHOWN else {ALL: GROUPS[ALL]}
+    kinds = [(trial.kind, trial.size) for trial in faults]
     five = np.array([kind in SINGLE and (kind == "jam" or size == 5.0) for kind, size in kinds]) & became.calm
-    told.injected.add(
-        f"{words} {ALL}", rival.method, {"detection_rate": _mean(became.right[five])}, " or ".join(SINGLE)
-    )
+    pooled = {"detection_rate": _mean(became.right[five])}
+    told.injected.add(f"{words} {ALL}", rival.method, pooled, " or ".join(SINGLE))
     for kind, size in dict.fromkeys(kinds):
         mine = np.array([one == (kind, size) for one in kinds]) & became.calm
-        for group, part in groups.items():
+        for group, part in (GROUPS if words == SHOWN else {ALL: GROUPS[ALL]}).items():
             rows = mine & np.isin(column, np.arange(SENSORS)[part])
-            right = silent if kind == "miss" else became.right
-            numbers = {"detection_rate": _mean(right[rows]), "chance": float(np.mean(chance[part]))}
             if kind == "miss":
-                del numbers["chance"]
+                numbers = {"detection_rate": _mean(silent[rows])}
             else:
-                delay = became.delay[rows & became.right]
-                numbers["delay_steps"] = float(np.median(delay)) if delay.size else float("nan")
+                numbers = {"detection_rate": _mean(became.right[rows]), "chance": float(chance[part].mean())}
+                numbers["delay_steps"] = _median(became.delay[rows & became.right])
             told.injected.add(f"{words} {group}", rival.method, numbers, kind, _size(kind, size))
     if rival.method == NETWORK and words == SHOWN:
         for i in np.flatnonzero(five):
@@ -123,10 +118,14 @@ def _isolate(
             told.accused[column[i], SENSORS] += not became.named[i].any()
 
 
-def _calm(quiet: Told, column: int) -> Isolated:
-    """What would pass for a fault of this sensor where nothing lies."""
+def _chance(quiet: Told, column: int) -> float:
+    """How often it would pass for a fault of this sensor that nothing lies."""
     became = isolated(quiet, np.full(len(quiet.channel), column))
-    return replace(became, right=became.right[became.calm])
+    return _mean(became.right[became.calm])
+
+
+def _median(delay: Float[np.ndarray, " N"]) -> float:
+    return float(np.median(delay)) if delay.size else float("nan")
 
 
 def _mean(right: Bool[np.ndarray, " N"]) -> float:
