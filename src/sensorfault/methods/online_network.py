@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.logs.table import Log
+from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model, hold_s, owners
@@ -18,14 +18,16 @@ from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.monitor.threshold.sigma import Sigma
 from sensorfault.replay import Replayed, replay_log
 from sensorfault.training.limits import tail_limit
-from sensorfault.training.online import Learning, learner, untaught
+from sensorfault.training.online import Learning, learner, noise, steps, untaught
 from sensorfault.training.session import Session
 
 NAME = "online-network"
 OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
 TAUGHT = 0.7  # of the healthy log; the limits come from the rest
+BLOCK = 50  # ticks: alarms closer together than this are one
 PER_HOUR = 1.0  # false alarms promised, shared by the channels
 
 
@@ -34,12 +36,14 @@ class Setting:
     """How the networks are taught, and how they judge.
 
     `groups`: paths of the outputs of each network where there are several, each blind to what the others foretell.
-    `theta`: the limits of some paths [SI]; those of the others come from the tail of the healthy residual. A stand-in
-    is believed for `horizon` ticks, then the channel is unknown until it has been measured anew.
+    Limits are Δ + 3σ: with `slope`, as printed, Δ is the largest step of the healthy output from one tick to the next,
+    else the tail of its healthy residual decides. `theta`: the whole limit of some paths [SI], whatever their Δ. A
+    stand-in is believed for `horizon` ticks, then the channel is unknown until it has been measured anew.
     """
 
     learning: Learning = field(default_factory=Learning)
     groups: tuple[tuple[str, ...], ...] = ()
+    slope: bool = False
     theta: Mapping[str, float] = field(default_factory=dict)
     horizon: int = 10
 
@@ -52,37 +56,37 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
         LogError: too few complete rows, or nothing to watch.
     """
     training = Training.of(NAME, log, OFTEN)
-    paths = [channel.path for channel in log.channels]
-    groups = setting.groups or (tuple(path for path, w in zip(paths, training.watched, strict=True) if w),)
-    driven = _driven(log)
+    driven, groups = _driven(log), _groups(training, setting)
     cut = log.time[0] + TAUGHT * log.duration_s
     networks = []
-    for g, group in enumerate(groups):
+    for g, columns in enumerate(groups):
         session.tell(f"teaching network {g + 1} of {len(groups)}")
-        columns = tuple(log.index(path) for path in group)
-        networks.append(
-            learner(log.between(end_s=cut), columns, driven, setting.learning, seed, replace(session, checkpoint=None))
-        )
+        own = replace(session, checkpoint=None)  # one file cannot hold several trainings
+        networks.append(learner(log.between(end_s=cut), columns, driven, setting.learning, seed, own))
     session.tell("measuring what they leave")
-    tape = replay_log(_monitor(log, networks, np.full(len(paths), np.inf), setting), log.between(cut))
-    sigma = _spread(tape)
-    theta = tail_limit(np.asarray(tape.scores[0]), log.period_s, PER_HOUR / len(paths))
-    theta = np.array([setting.theta.get(path, limit) for path, limit in zip(paths, theta, strict=True)])
-    networks = [replace(one, cov=jnp.diag(jnp.asarray(sigma**2))) for one in networks]
+    channels = len(log.channels)
+    deaf = _monitor(log, networks, Fixed(jnp.full(channels, jnp.inf)), setting)
+    tape = replay_log(deaf, log.between(cut))
+    spread = _spread(tape)
+    limit = tail_limit(np.asarray(tape.scores[0]), log.period_s, PER_HOUR / channels, BLOCK * log.period_s)
+    threshold = _threshold(training, limit, setting)
+    networks = [replace(one, cov=jnp.diag(jnp.asarray(spread**2))) for one in networks]
+    limits = np.asarray(threshold.limit())
     if setting.learning.scratch:
-        networks = [untaught(one, theta, setting.learning.warm, seed) for one in networks]
+        networks = [untaught(one, limits, setting.learning.warm, seed) for one in networks]
+    paths = [channel.path for channel in log.channels]
     told = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "rows": int(training.rows.sum()),
         "not_watched": training.reasons,
         "inputs": [paths[i] for i in driven],
-        "limits": dict(zip(paths, theta.tolist(), strict=True)),
+        "limits": dict(zip(paths, limits.tolist(), strict=True)),
     }
-    monitor = _monitor(log, networks, theta, setting)
+    monitor = _monitor(log, networks, threshold, setting)
     tests = tuple(("absolute", path) for path in paths)
     watched = tuple(any(c in one.columns for one in networks) for c in range(len(paths)))
-    return Model(NAME, monitor, log.channels, log.sensors, tests, watched, log.period_s, tuple(sigma.tolist()), told)
+    return Model(NAME, monitor, log.channels, log.sensors, tests, watched, log.period_s, tuple(spread.tolist()), told)
 
 
 def _driven(log: Log) -> tuple[int, ...]:
@@ -95,13 +99,42 @@ def _driven(log: Log) -> tuple[int, ...]:
     )
 
 
-def _monitor(log: Log, networks: Sequence[OnlineNetwork], theta: Float[np.ndarray, " C"], setting: Setting) -> Monitor:
+def _groups(training: Training, setting: Setting) -> list[tuple[int, ...]]:
+    """Columns of the outputs of each network.
+
+    Raises:
+        LogError: one that cannot be foretold.
+    """
+    log = training.log
+    if not setting.groups:
+        return [tuple(np.flatnonzero(training.watched).tolist())]
+    groups = [tuple(log.index(path) for path in group) for group in setting.groups]
+    for path in (log.channels[c].path for group in groups for c in group):
+        if path in training.reasons:
+            raise LogError(f"{log.name}: {path} is {training.reasons[path]}; leave it out of the groups of {NAME}.")
+    return groups
+
+
+def _threshold(training: Training, limit: Float[np.ndarray, " C"], setting: Setting) -> Sigma:
+    """Δ + 3σ; `limit`: what it is where Δ is the tail of the healthy residual [SI]."""
+    log, sigma = training.log, np.zeros(limit.size)
+    columns = np.flatnonzero(training.watched)
+    sigma[columns] = noise(log.value[:, columns])
+    delta = limit - 3 * sigma
+    if setting.slope:
+        delta[columns] = steps(log, columns.tolist())
+    for path, theta in setting.theta.items():
+        delta[log.index(path)] = theta - 3 * sigma[log.index(path)]
+    return Sigma(jnp.asarray(delta / log.period_s), jnp.asarray(sigma), jnp.asarray(log.period_s))
+
+
+def _monitor(log: Log, networks: Sequence[OnlineNetwork], threshold: Fixed | Sigma, setting: Setting) -> Monitor:
     """The networks side by side, each channel judged by itself; a channel over its limit is out for that sample."""
     channels = len(log.channels)
     answers = np.array([[c in one.columns for c in range(channels)] for one in networks])
     return Monitor(
         residual=networks[0] if len(networks) == 1 else Several(tuple(networks), jnp.asarray(answers)),
-        branches=(Branch(Absolute(), Fixed(jnp.asarray(theta))),),
+        branches=(Branch(Absolute(), threshold),),
         decision=Exceed(),
         recovery=Rebuild(jnp.asarray(setting.horizon * log.period_s), jnp.asarray(log.period_s / 2), channels),
         hold_s=jnp.asarray(hold_s(log)),
