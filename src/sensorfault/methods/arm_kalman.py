@@ -41,7 +41,7 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
     watched = np.isin(np.arange(channels), outputs)
     rows = complete(log, watched)
     _check(name, log, found, int(rows.sum()))
-    r = noise(log)[list(outputs)] ** 2
+    r = noise(log.value[:, outputs]) ** 2
     limit = NormalDist().inv_cdf(1 - far / 2)
     monitor = Monitor(
         residual=ArmKalman(

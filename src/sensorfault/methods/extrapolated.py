@@ -2,7 +2,6 @@
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 
 from sensorfault.logs.table import Log
 from sensorfault.methods import each
@@ -10,6 +9,7 @@ from sensorfault.methods.predicted import Positions, limited
 from sensorfault.methods.watch import watchable
 from sensorfault.model import MISSED, Model
 from sensorfault.monitor.residual.extrapolation import Extrapolation
+from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.vehicles.arm import joints
 
 
@@ -43,6 +43,6 @@ def _of_arm(name: str, log: Log, order: int) -> Model:
         stale_s=jnp.full(len(watched), (MISSED + 0.5) * log.period_s),
         order=order,
     )
-    theta, sigma = each.healthy(log, residual)
-    known = eqx.tree_at(lambda r: r.cov, residual, jnp.diag(jnp.asarray(sigma**2)))
-    return each.model(name, log, known, np.where(watched, theta, np.inf), sigma, {"not_watched": reasons})
+    theta, spread = each.healthy(log, residual)
+    known = eqx.tree_at(lambda r: r.cov, residual, jnp.diag(jnp.asarray(spread**2)))
+    return each.model(name, log, known, Fixed(jnp.asarray(theta)), spread, {"not_watched": reasons})

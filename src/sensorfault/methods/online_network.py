@@ -5,15 +5,17 @@ from dataclasses import dataclass, field, replace
 
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Float
 
-from sensorfault.logs.table import Log
+from sensorfault.logs.table import Log, LogError
 from sensorfault.methods import each
 from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.several import Several
-from sensorfault.training.online import Learning, learner, untaught
+from sensorfault.monitor.threshold.sigma import Sigma
+from sensorfault.training.online import Learning, learner, noise, steps, untaught
 from sensorfault.training.session import Session
 
 NAME = "online-network"
@@ -26,12 +28,14 @@ class Setting:
     """How the networks are taught, and how they judge.
 
     `groups`: paths of the outputs of each network where there are several, each blind to what the others foretell.
-    `theta`: the limits of some paths [SI]; those of the others come from the tail of the healthy residual. A stand-in
-    is believed for `horizon` ticks, then the channel is unknown until it has been measured anew.
+    Limits are Δ + 3σ: with `slope`, as printed, Δ is the largest step of the healthy output from one tick to the next,
+    else the tail of its healthy residual decides. `theta`: the whole limit of some paths [SI], whatever their Δ. A
+    stand-in is believed for `horizon` ticks, then the channel is unknown until it has been measured anew.
     """
 
     learning: Learning = field(default_factory=Learning)
     groups: tuple[tuple[str, ...], ...] = ()
+    slope: bool = False
     theta: Mapping[str, float] = field(default_factory=dict)
     horizon: int = each.HORIZON
 
@@ -44,29 +48,26 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
         LogError: too few complete rows, or nothing to watch.
     """
     training = Training.of(NAME, log, OFTEN)
-    paths = [channel.path for channel in log.channels]
-    groups = setting.groups or (tuple(path for path, w in zip(paths, training.watched, strict=True) if w),)
-    driven = _driven(log)
+    driven, groups = _driven(log), _groups(training, setting)
     cut = log.time[0] + TAUGHT * log.duration_s
     networks = []
-    for g, group in enumerate(groups):
+    for g, columns in enumerate(groups):
         session.tell(f"teaching network {g + 1} of {len(groups)}")
-        columns = tuple(log.index(path) for path in group)
-        networks.append(
-            learner(log.between(end_s=cut), columns, driven, setting.learning, seed, replace(session, checkpoint=None))
-        )
+        own = replace(session, checkpoint=None)  # one file cannot hold several trainings
+        networks.append(learner(log.between(end_s=cut), columns, driven, setting.learning, seed, own))
     session.tell("measuring what they leave")
-    theta, sigma = each.healthy(log.between(cut), _side_by_side(networks, len(paths)))
-    theta = np.array([setting.theta.get(path, limit) for path, limit in zip(paths, theta, strict=True)])
-    networks = [replace(one, cov=jnp.diag(jnp.asarray(sigma**2))) for one in networks]
+    limit, spread = each.healthy(log.between(cut), _side_by_side(networks, log))
+    threshold = _threshold(training, limit, setting)
+    networks = [replace(one, cov=jnp.diag(jnp.asarray(spread**2))) for one in networks]
     if setting.learning.scratch:
-        networks = [untaught(one, theta, setting.learning.warm, seed) for one in networks]
+        limits = np.asarray(threshold.limit())
+        networks = [untaught(one, limits, setting.learning.warm, seed) for one in networks]
     told = {
         "rows": int(training.rows.sum()),
         "not_watched": training.reasons,
-        "inputs": [paths[i] for i in driven],
+        "inputs": [log.channels[i].path for i in driven],
     }
-    return each.model(NAME, log, _side_by_side(networks, len(paths)), theta, sigma, told, setting.horizon)
+    return each.model(NAME, log, _side_by_side(networks, log), threshold, spread, told, setting.horizon)
 
 
 def _driven(log: Log) -> tuple[int, ...]:
@@ -79,9 +80,38 @@ def _driven(log: Log) -> tuple[int, ...]:
     )
 
 
-def _side_by_side(networks: Sequence[OnlineNetwork], channels: int) -> OnlineNetwork | Several:
+def _groups(training: Training, setting: Setting) -> list[tuple[int, ...]]:
+    """Columns of the outputs of each network.
+
+    Raises:
+        LogError: one that cannot be foretold.
+    """
+    log = training.log
+    if not setting.groups:
+        return [tuple(np.flatnonzero(training.watched).tolist())]
+    groups = [tuple(log.index(path) for path in group) for group in setting.groups]
+    for path in (log.channels[c].path for group in groups for c in group):
+        if path in training.reasons:
+            raise LogError(f"{log.name}: {path} is {training.reasons[path]}; leave it out of the groups of {NAME}.")
+    return groups
+
+
+def _threshold(training: Training, limit: Float[np.ndarray, " C"], setting: Setting) -> Sigma:
+    """Δ + 3σ; `limit`: what it is where Δ is the tail of the healthy residual [SI]."""
+    log, sigma = training.log, np.zeros(limit.size)
+    columns = np.flatnonzero(training.watched)
+    sigma[columns] = noise(log.value[:, columns])
+    delta = limit - 3 * sigma
+    if setting.slope:
+        delta[columns] = steps(log, columns.tolist())
+    for path, theta in setting.theta.items():
+        delta[log.index(path)] = theta - 3 * sigma[log.index(path)]
+    return Sigma(jnp.asarray(delta / log.period_s), jnp.asarray(sigma), jnp.asarray(log.period_s))
+
+
+def _side_by_side(networks: Sequence[OnlineNetwork], log: Log) -> OnlineNetwork | Several:
     """One residual, each network answering for its own outputs."""
-    answers = np.array([[c in one.columns for c in range(channels)] for one in networks])
+    answers = np.array([[c in one.columns for c in range(len(log.channels))] for one in networks])
     return networks[0] if len(networks) == 1 else Several(tuple(networks), jnp.asarray(answers))
 
 

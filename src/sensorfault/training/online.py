@@ -2,6 +2,7 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -55,15 +56,15 @@ def learner(
     It begins with random weights, but foretelling no change (or, if `absolute`, the middle of the range).
     """
     (m, n), outputs = learning.delays, len(columns)
-    low, high = np.nanmin(log.value, axis=0), np.nanmax(log.value, axis=0)
-    both = [*columns, *driven]
+    seen = log.value[:, [*columns, *driven]]
+    low, high = np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)
     new = OnlineNetwork(
         network=_new(learning.hidden, outputs * m + len(driven) * (n + 1), outputs, seed),
-        center=jnp.asarray(((low + high) / 2)[both]),
-        half=jnp.asarray(((high - low) / 2)[both]),
-        step=jnp.asarray(_steps(log)[list(columns)]),
+        center=jnp.asarray((low + high) / 2),
+        half=jnp.asarray((high - low) / 2),
+        step=jnp.asarray(steps(log, columns)),
         cov=jnp.eye(len(log.channels)),
-        tolerance=jnp.asarray(np.sqrt(2) * noise(log)[list(columns)]),
+        tolerance=jnp.asarray(np.sqrt(2) * noise(log.value[:, columns])),
         settled=jnp.zeros(outputs),
         rate=jnp.asarray(learning.rate),
         warm=jnp.asarray(0.0),
@@ -86,25 +87,25 @@ def untaught(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int,
     return replace(residual, network=network, settled=jnp.asarray(limit[outputs]), warm=jnp.asarray(float(warm)))
 
 
-def noise(log: Log) -> Float[np.ndarray, " C"]:
+def noise(value: Float[np.ndarray, "T D"]) -> Float[np.ndarray, " D"]:
     """Standard deviation of each channel's noise [SI]: of what no smooth motion explains, by third differences.
 
     White noise of variance s² has third differences of variance 20 s²; their median size is not moved by a few jumps.
     """
-    rough = np.abs(np.diff(log.value, 3, axis=0))
+    rough = np.abs(np.diff(value, 3, axis=0))
     return np.asarray(np.nanmedian(rough, axis=0) / 0.6745 / np.sqrt(20))
+
+
+def steps(log: Log, columns: Sequence[int]) -> Float[np.ndarray, " D"]:
+    """The largest change of each of these channels from one tick to the next [SI]."""
+    together = np.diff(log.time)[:, None] <= GAP * log.period_s
+    change = np.where(together, np.abs(np.diff(log.value[:, columns], axis=0)), np.nan)
+    return np.asarray(np.nanmax(change, axis=0))
 
 
 def _new(hidden: int, inputs: int, outputs: int, seed: int) -> Mlp:
     network = new_mlp(seed, inputs, outputs, (hidden,))
     return replace(network, output=jax.tree.map(jnp.zeros_like, network.output))
-
-
-def _steps(log: Log) -> Float[np.ndarray, " C"]:
-    """The largest increment of each channel from one tick to the next [SI]."""
-    together = np.diff(log.time)[:, None] <= GAP * log.period_s
-    change = np.where(together, np.abs(np.diff(log.value, axis=0)), np.nan)
-    return np.asarray(np.nanmax(change, axis=0))
 
 
 def _examples(residual: OnlineNetwork, log: Log) -> Windows:

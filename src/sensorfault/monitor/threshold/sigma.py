@@ -1,4 +1,4 @@
-"""As far as a healthy output can go in one tick, and three deviations of its noise beyond."""
+"""How far off a healthy prediction can be, and three deviations of the sensor's noise beyond."""
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -7,18 +7,25 @@ from sensorfault.types import Residual, Score, Trust
 
 
 class Sigma(eqx.Module):
-    """theta_i = Delta_i + 3 sigma_i with Delta_i = rho_i dt, one test a channel. Niu & Zhao 1998."""
+    """theta_i = Delta_i + 3 sigma_i with Delta_i = rho_i dt, one test a channel. Niu & Zhao 1998, section 2.
 
-    rho: Float[Array, " K"]  # the largest slope [SI/s]
-    sigma: Float[Array, " K"]  # [SI]
+    Printed for Delta, the largest error of a prediction, is its bound: rho the largest slope of the output itself.
+    """
+
+    rho: Float[Array, " K"]  # the fastest that the output, or the error of its prediction, moves [SI/s]
+    sigma: Float[Array, " K"]  # of the sensor's noise [SI]
     tick_s: Float[Array, ""]
 
     def init(self) -> tuple[()]:
         return ()
 
     def evaluate(self, state: tuple[()], seen: tuple[Residual, Score]) -> tuple[Float[Array, " K"], tuple[()]]:
-        # theta_i = rho_i dt + 3 sigma_i
-        return self.rho * self.tick_s + 3 * self.sigma, ()
+        return self.limit(), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
         return ()
+
+    def limit(self) -> Float[Array, " K"]:
+        """theta, which nothing that is seen changes."""
+        # theta_i = rho_i dt + 3 sigma_i
+        return self.rho * self.tick_s + 3 * self.sigma
