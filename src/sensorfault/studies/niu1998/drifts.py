@@ -27,6 +27,7 @@ from sensorfault.studies.niu1998.run import (
 )
 
 SETTINGS = {"as-printed": AS_PRINTED, "physical": PHYSICAL}
+ELSEWHERE = replace(AS_PRINTED, start=(11.0, -8.2, 0.8, 1.9))
 FROM_REST = replace(AS_PRINTED, start=(0.0, 0.0, 0.0, 0.0))
 AT_RATE = "far5e-2"
 FAST = 2.0  # thresholds a sample
@@ -62,9 +63,11 @@ def drifts(effort: Effort) -> Drifts:
             for seed in range(seeds):
                 effort.tell(f"{rival.method} on the paper's arm, {name}", done / (len(SETTINGS) * len(rivals) * seeds))
                 watched = Watched.of(rival, setting, seed)
-                _judge(told, name, rival, watched)
-                if name == "as-printed":
-                    _sweep(told.numbers, name, rival, watched, QUICK if effort.quick else SLOWER)
+                limited = watched.at_rate()
+                _judge(told, name, rival, watched, limited)
+                if setting is AS_PRINTED:
+                    _elsewhere(told.numbers, name, rival, watched, limited)
+                    _sweep(told.numbers, name, rival, watched, limited, QUICK if effort.quick else SLOWER)
                     _from_rest(told.numbers, rival, seed)
                 done += 1
     return told
@@ -75,14 +78,14 @@ def _by_path(limit: Float[np.ndarray, " C"]) -> Mapping[str, float]:
     return dict(zip(paths, limit[list(JUDGED)].tolist(), strict=True))
 
 
-def _judge(told: Drifts, name: str, rival: Rival, watched: Watched) -> None:
+def _judge(told: Drifts, name: str, rival: Rival, watched: Watched, limited: Model) -> None:
     """Both drifts, each of two thresholds a sample, under the paper's thresholds and at one rate of false alarms."""
     limit = theta(watched.setting)
     printed = watched.model if rival.method == KALMAN else with_limits(watched.model, limit)
     fast = {sensor: FAST * float(limit[column]) for sensor, column in zip(SENSORS, COLUMNS, strict=True)}
     condition = f"{name} {rival.variant}".strip()
     drifting = watched.drifting(fast)
-    for words, model in ((condition, printed), (f"{condition} {AT_RATE}", watched.at_rate())):
+    for words, model in ((condition, printed), (f"{condition} {AT_RATE}", limited)):
         seen = watch(model, drifting)
         numbers = {"detection_rate": found_soon(seen).mean(), "far": early(seen).mean()}
         numbers |= {f"sample_{y}": first(seen, column).mean() for y, column in zip(NAMES, COLUMNS, strict=True)}
@@ -103,14 +106,21 @@ def _errors(numbers: Numbers, condition: str, rival: Rival, watched: Watched) ->
         numbers.add(words, rival.method, errors)
 
 
+def _elsewhere(numbers: Numbers, name: str, rival: Rival, watched: Watched, limited: Model) -> None:
+    """The same arm, model and limits, and another motion: how many healthy runs raise an early alarm now."""
+    moved = replace(watched, setting=ELSEWHERE)
+    condition = " ".join(part for part in (name, rival.variant, AT_RATE, "other-start") if part)
+    numbers.add(condition, rival.method, {"far": early(watch(limited, moved.healthy())).mean()})
+
+
 def _from_rest(numbers: Numbers, rival: Rival, seed: int) -> None:
     if rival.method != KALMAN:
         _errors(numbers, f"as-printed from-rest {rival.variant}".strip(), rival, Watched.of(rival, FROM_REST, seed))
 
 
-def _sweep(numbers: Numbers, name: str, rival: Rival, watched: Watched, rates: tuple[float, ...]) -> None:
+def _sweep(numbers: Numbers, name: str, rival: Rival, watched: Watched, model: Model, rates: tuple[float, ...]) -> None:
     """One sensor drifts, slower and slower: found within so many samples, at one rate of false alarms."""
-    limit, model = theta(watched.setting), watched.at_rate()
+    limit = theta(watched.setting)
     for y, sensor, column in zip(NAMES, SENSORS, COLUMNS, strict=True):
         condition = " ".join(part for part in (name, rival.variant, AT_RATE, y) if part)
         for rate in rates:

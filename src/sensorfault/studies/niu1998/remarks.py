@@ -4,7 +4,18 @@ from math import isfinite
 
 from sensorfault.methods.each import HORIZON
 from sensorfault.studies.findings import Effort
-from sensorfault.studies.niu1998.drifts import AT_RATE, FAST, FOUND, NAMES, QUICK, SETTINGS, SLOWER, Drifts, smallest
+from sensorfault.studies.niu1998.drifts import (
+    AT_RATE,
+    ELSEWHERE,
+    FAST,
+    FOUND,
+    NAMES,
+    QUICK,
+    SETTINGS,
+    SLOWER,
+    Drifts,
+    smallest,
+)
 from sensorfault.studies.niu1998.isolation import LASTING
 from sensorfault.studies.niu1998.joints import EACH, NEW, QUICK_EACH, SHOWN, SINGLE, Joints
 from sensorfault.studies.niu1998.rivals import AS_PRINTED, KALMAN, NETWORK, PLAIN, SCRATCH
@@ -50,10 +61,17 @@ def _network(run: Drifts) -> str:
     for words in (PRINTED, f"{PRINTED} {SCRATCH}", f"{PRINTED} {AS_PRINTED}"):
         rate, far, blank = (run.numbers.mean(words, NETWORK, m, "drift") for m in ("detection_rate", "far", "untested"))
         said.append(f"{rate:.0%} found, {far:.1%} with an early alarm, {blank:.0%} of the samples before untested")
+    moved = {f"{NETWORK}{v}": (NETWORK, v) for v in ("", f" {SCRATCH}")} | {m: (m, "") for m in (*PLAIN, KALMAN)}
+    elsewhere = ", ".join(
+        f"{name} {run.numbers.mean(f'{PRINTED}{variant} {AT_RATE} other-start', method, 'far'):.0%}"
+        for name, (method, variant) in moved.items()
+    )
     return (
         f"B: the recipe, trained before on healthy runs of the same motion and learning increments: {said[0]}. The "
         f"same beginning with random weights ('{SCRATCH}'): {said[1]}. Absolute values learned from scratch, as "
-        f"printed ('{AS_PRINTED}'): {said[2]}; from such a beginning 50 samples hardly let it settle."
+        f"printed ('{AS_PRINTED}'): {said[2]}; from such a beginning 50 samples hardly let it settle. What is trained "
+        f"knows the motion, not the arm: at the limits of {AT_RATE}, started from {ELSEWHERE.start}, healthy runs with "
+        f"an early alarm are {elsewhere}."
     )
 
 
