@@ -10,18 +10,30 @@ from dataclasses import replace
 import equinox as eqx
 import numpy as np
 
-from laws.case import Case
+from laws.case import Case, limits_learned
 from laws.guests.zoo import zoo
-from sensorfault.methods import ar_predictor, bp_autoencoder, lstm_displacement, lstm_predictor, mlp_predictor
+from sensorfault.logs.table import Channel, Log, Sensor
+from sensorfault.methods import (
+    ar_predictor,
+    bp_autoencoder,
+    lstm_displacement,
+    lstm_predictor,
+    mlp_predictor,
+    online_network,
+)
 from sensorfault.methods.catalog import METHODS
+from sensorfault.methods.online_network import NAME as NETWORK
+from sensorfault.methods.online_network import Setting
 from sensorfault.methods.predicted import READMIT_S, REBUILD_S
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
+from sensorfault.simulation.arm import PERIOD_S, run
 from sensorfault.simulation.road import drive
 from sensorfault.training.gradient import Plan
+from sensorfault.training.online import Learning
 from sensorfault.training.session import Session
 
 POSITION = ["gnss.latitude", "gnss.longitude"]
@@ -102,6 +114,57 @@ def of_motion(name: str) -> Case:
     return Case(name, monitor, samples(part.time, part.value, part.fresh), lie, BACK_S, named=())
 
 
+def two_links() -> Case:
+    """The filter of a two-joint arm."""
+    monitor = METHODS["arm-kalman"].build(run(seed=1), 0, Session()).monitor
+    log = run(seed=2, samples=400)
+    lie = np.array([0.5, 0.5, 0.5, 0.5, 0.0, 0.0])
+    rows = samples(log.time, log.value, log.fresh)
+    return Case("arm-kalman", monitor, rows, lie, 5 * PERIOD_S, named=(0, 1, 2, 3))
+
+
+def arm() -> Case:
+    """Two joints, each a driven oscillator, that the network knows from 40 s, in the 8 s after them.
+
+    Without the torques nothing can be foretold.
+    """
+    log = two_joints(2400)
+    setting = Setting(learning=Learning(plan=Plan(epochs=20, rate=1e-2)))
+    monitor = online_network.build(log.between(end_s=40.0), 0, Session(), setting).monitor
+    part = log.between(40.0)
+    lie = np.concatenate([0.1 * np.ptp(log.value[:, :4], axis=0), np.zeros(2)])
+    outputs = (0, 1, 2, 3)
+    return Case(
+        NETWORK,
+        monitor,
+        samples(part.time, part.value, part.fresh),
+        lie,
+        back_s=float(monitor.recovery.horizon_s) + 0.1,
+        learned=lambda state: (state.residual.network, limits_learned(state)),
+        named=outputs,
+        lost={4: outputs, 5: outputs},
+    )
+
+
+def two_joints(rows: int) -> Log:
+    """Rates and angles of two joints at 50 Hz, and the torques that drive them."""
+    random, dt = np.random.default_rng(8), 0.02
+    torque = np.stack([np.sin(np.arange(rows) * dt * w) for w in (1.3, 2.1)], axis=1)
+    rate, angle = np.zeros((rows, 2)), np.zeros((rows, 2))
+    for k in range(1, rows):
+        pull = torque[k] - 4 * np.sin(angle[k - 1]) - 0.5 * rate[k - 1] + 0.3 * rate[k - 1, ::-1]
+        rate[k], angle[k] = rate[k - 1] + dt * pull, angle[k - 1] + dt * rate[k - 1]
+    value = np.hstack([rate, angle, torque]) + [*[3e-3] * 4, 0, 0] * random.standard_normal((rows, 6))
+    names = [("tachometer", "rate", "rad/s"), ("encoder", "angle", "rad"), ("drive", "torque", "N m")]
+    channels = tuple(
+        Channel(name, f"{sensor}{joint}", unit, watch=sensor != "drive")
+        for sensor, name, unit in names
+        for joint in (1, 2)
+    )
+    sensors = tuple(Sensor(channel.sensor, dt) for channel in channels)
+    return Log(dt * np.arange(rows), value, np.ones(value.shape, bool), channels, sensors)
+
+
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
     """The monitor of a joint test and one of repeats, for its channels in another order."""
     residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
@@ -142,7 +205,7 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 ZOO = {case.name: case for case in zoo()}
 MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
-ALONE = {"motion-deficit": deficit, "car": whole_car, **MOTION}
+ALONE = {"motion-deficit": deficit, "car": whole_car, NETWORK: arm, "arm-kalman": two_links, **MOTION}
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
 

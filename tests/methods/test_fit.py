@@ -41,7 +41,8 @@ def default() -> Model:
 
 
 def test_the_catalog() -> None:
-    assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, "bp-autoencoder", "motion-deficit", "bicycle-kalman", "car"}
+    others = {"bp-autoencoder", "motion-deficit", "bicycle-kalman", "car", "online-network", "arm-kalman"}
+    assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, *others}
     assert DEFAULT == "relative-conditioning"
     for name, recipe in METHODS.items():
         assert recipe.name == name

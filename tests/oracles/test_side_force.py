@@ -9,7 +9,7 @@ from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.residual.side_force import SideForce
-from sensorfault.monitor.statistic.aside import Lasting
+from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.run import samples
 from sensorfault.vehicles.inertial import SideOn

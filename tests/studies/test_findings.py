@@ -71,7 +71,7 @@ def test_a_number_has_the_digits_it_deserves(value: float, spread: float | None,
 
 
 @pytest.mark.parametrize(
-    ("paper", "want"), [(None, ""), (0.9, "0.90"), (12.34, "12.3"), (0.0, "0.00"), (math.nan, "–")]
+    ("paper", "want"), [(None, ""), (0.9, "0.90"), (12.34, "12.34"), (0.0, "0.00"), (math.nan, "–")]
 )
 def test_the_papers_number(paper: float | None, want: str) -> None:
     assert printed(replace(ONE, paper=paper)) == Cell(want)

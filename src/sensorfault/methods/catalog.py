@@ -3,6 +3,7 @@
 from sensorfault.logs.table import LogError
 from sensorfault.methods import (
     ar_predictor,
+    arm_kalman,
     bicycle_kalman,
     bp_autoencoder,
     car,
@@ -15,6 +16,7 @@ from sensorfault.methods import (
     lstm_predictor,
     mlp_predictor,
     motion_deficit,
+    online_network,
     pca,
     persistence,
     relative_conditioning,
@@ -40,6 +42,8 @@ _RECIPES = (
     bicycle_kalman.RECIPE,
     side_force.RECIPE,
     car.RECIPE,
+    online_network.RECIPE,
+    arm_kalman.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

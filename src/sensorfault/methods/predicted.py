@@ -109,23 +109,6 @@ def from_windows(name: str, log: Log, length: int, fit: Callable[[Windows], Line
     return limited(name, positions, residual, {"inputs": [log.channels[i].path for i in inputs.columns]})
 
 
-def from_last(name: str, log: Log, order: int) -> Model:
-    """The monitor of an extrapolation of the position from its last measurements.
-
-    Raises:
-        LogError: a log without positions, with too few of them, or that never moves.
-    """
-    positions = Positions.of(name, log)
-    residual = Extrapolation(
-        watched=jnp.asarray(positions.mark(positions.columns)),
-        angle=jnp.asarray(positions.mark(positions.turning)),
-        cov=jnp.eye(len(log.channels)),
-        stale_s=jnp.asarray(positions.stale_s),
-        order=order,
-    )
-    return limited(name, positions, residual, {})
-
-
 def limited(
     name: str,
     positions: Positions,

@@ -10,7 +10,7 @@ from sensorfault.model import MOTION, Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.statistic.aside import Lasting
+from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.training.limits import tail_limit
 from sensorfault.training.session import Session

@@ -7,19 +7,22 @@ from sensorfault.monitor.decision.persist import Persist
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.arm_kalman import ArmKalman
 from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
+from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.residual.side_force import SideForce
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
-from sensorfault.monitor.statistic.aside import Lasting
+from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.exchange import Exchange
+from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.statistic.normality import Normality
@@ -32,8 +35,10 @@ from sensorfault.monitor.statistic.standing import Standing
 from sensorfault.monitor.statistic.whitened import Whitened
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
+from sensorfault.monitor.threshold.sigma import Sigma
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
+from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.inertial import Inertial, SideOn
 
 PARTS: dict[str, type[eqx.Module]] = {
@@ -41,13 +46,14 @@ PARTS: dict[str, type[eqx.Module]] = {
     for part in (
         *(Monitor, Branch),
         *(Reconstruction, Conditioning, Several),
-        *(Prediction, Extrapolation, Displacement),
+        *(Prediction, Extrapolation, Displacement, OnlineNetwork),
         *(MotionDeficit, VelocityDeficit, Inertial, SideForce, SideOn),
         *(Dense, Linear, Mlp, Lstm, LstmLayer),
-        *(Norm, Mahalanobis, Exchange, Repeats, Of, Relative),
+        *(Norm, Absolute, Mahalanobis, Exchange, Repeats, Of, Relative),
         *(Deficit, Shortfall, Standing, Slippage, Lasting),
         *(BicycleKalman, Columns, Whitened, Normality),
-        *(Fixed, ScaledMax),
+        *(ArmKalman, TwoLink),
+        *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),
         *(Drop, Rebuild),
     )

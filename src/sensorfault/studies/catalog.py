@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from sensorfault.studies.findings import Effort, Findings
 from sensorfault.studies.min2021.study import study as min2021
+from sensorfault.studies.niu1998.study import study as niu1998
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,13 @@ STUDIES: dict[str, Study] = {
                 "A3": "Abnormal motion: is the residual normal?",
                 "A4": "Bias and miss",
             },
+        ),
+        Study(
+            "niu1998",
+            "Sensors of a robot arm, and a network that learns while it watches",
+            "Niu & Zhao 1998",
+            niu1998,
+            {"B": "Drifts, and faults of all kinds"},
         ),
     )
 }

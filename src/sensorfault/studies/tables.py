@@ -116,6 +116,7 @@ def ours(row: Row) -> Cell:
     if not math.isfinite(row.value):
         return Cell(NONE)
     digits = _digits(row.value)
+    digits = max(digits, _decimals(row.paper)) if digits >= 2 else digits
     if row.spread and digits == 2 and abs(row.value) < 1 and row.spread < 0.005:
         digits = 3
     spread = "" if row.spread is None or not math.isfinite(row.spread) else f"±{row.spread:.{digits}f}"
@@ -126,7 +127,12 @@ def printed(row: Row) -> Cell:
     """The paper's number."""
     if row.paper is None:
         return Cell()
-    return Cell(f"{row.paper:.{_digits(row.paper)}f}" if math.isfinite(row.paper) else NONE)
+    return Cell(f"{row.paper:.{max(_digits(row.paper), _decimals(row.paper))}f}" if math.isfinite(row.paper) else NONE)
+
+
+def _decimals(paper: float | None) -> int:
+    """Digits behind the point that the paper prints; ours get no fewer where it is a small number."""
+    return len(f"{paper:g}".partition(".")[2]) if paper is not None and math.isfinite(paper) else 0
 
 
 def _digits(value: float) -> int:

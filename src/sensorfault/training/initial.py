@@ -36,7 +36,9 @@ def new_lstm(seed: int, inputs: int, outputs: int, cells: tuple[int, ...] = (16,
     return Lstm(layers, _dense(random, cells[-1], outputs))
 
 
-def new_mlp(seed: int, inputs: int, outputs: int, hidden: tuple[int, ...] = (16, 16), activation: str = "tanh") -> Mlp:
+def new_mlp(
+    seed: int | tuple[int, ...], inputs: int, outputs: int, hidden: tuple[int, ...] = (16, 16), activation: str = "tanh"
+) -> Mlp:
     """Hidden layers of so many units; `inputs`: rows of the window times its channels."""
     random = np.random.default_rng(seed)
     widths = (inputs, *hidden)

@@ -1,0 +1,63 @@
+"""Who is compared: the paper's network in three variants, what is plainer, and a filter that knows the arm."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from sensorfault.logs.table import Log
+from sensorfault.methods import online_network
+from sensorfault.methods.arm_kalman import arm_kalman
+from sensorfault.methods.catalog import METHODS
+from sensorfault.methods.online_network import Setting as Taught
+from sensorfault.model import Model
+from sensorfault.numerics.two_link import Constants
+from sensorfault.simulation.arm import SAMPLES
+from sensorfault.training.online import Learning
+from sensorfault.training.session import SILENT
+
+NETWORK, KALMAN = "online-network", "arm-kalman"
+PLAIN = ("persistence", "linear-extrapolation")
+SCRATCH, AS_PRINTED = "scratch", "scratch absolute"
+FAST = 0.3  # learning rate of what knows nothing and has 50 samples
+VARIANTS = {  # of the network, by what a row's condition calls it
+    "": Learning(),
+    SCRATCH: Learning(scratch=True, rate=FAST),
+    AS_PRINTED: Learning(scratch=True, rate=FAST, absolute=True),
+}
+DEEP = Learning(hidden=20, delays=(4, 1))  # for six joints
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A method as the catalog calls it, in a variant; `build` takes a healthy log and a seed."""
+
+    method: str
+    variant: str
+    build: Callable[[Log, int], Model]
+
+
+def of_two_links(arm: Constants, theta: Mapping[str, float]) -> tuple[Rival, ...]:
+    """On the paper's arm, whose constants the filter knows; `theta`: the paper's thresholds, by path."""
+    networks = (
+        Rival(NETWORK, variant, partial(_network, setting=Taught(learning, theta=theta, horizon=SAMPLES)))
+        for variant, learning in VARIANTS.items()
+    )
+    return (*networks, *_plain(), Rival(KALMAN, "", lambda log, seed: arm_kalman(KALMAN, log, arm)))
+
+
+def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
+    """On the real arm, of which there is no model; `groups`: paths that are foretold apart from the others."""
+    setting = Taught(DEEP, groups=groups)
+    return (Rival(NETWORK, "", partial(_network, setting=setting)), *_plain())
+
+
+def _network(log: Log, seed: int, setting: Taught) -> Model:
+    return online_network.build(log, seed, SILENT, setting)
+
+
+def _plain() -> tuple[Rival, ...]:
+    return tuple(Rival(method, "", partial(_of_catalog, method=method)) for method in PLAIN)
+
+
+def _of_catalog(log: Log, seed: int, method: str) -> Model:
+    return METHODS[method].build(log, seed, SILENT)

@@ -1,0 +1,77 @@
+"""Paper B's recipe: what it watches and by what limits, alone and in groups, taught and from scratch."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from laws.cases import two_joints
+from sensorfault.detector import detect
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.online_network import Setting, build
+from sensorfault.model import Model
+from sensorfault.training.gradient import Plan
+from sensorfault.training.online import Learning, noise, steps
+from sensorfault.training.session import SILENT
+from sensorfault.types import OK, UNKNOWN
+
+RATES, ANGLES = ("tachometer1.rate", "tachometer2.rate"), ("encoder1.angle", "encoder2.angle")
+LEARNING = Learning(plan=Plan(epochs=20, rate=1e-2))
+HEALTHY_S = 40.0
+
+
+@cache
+def log() -> Log:
+    return two_joints(2400)
+
+
+@cache
+def fitted(groups: tuple[tuple[str, ...], ...] = (), scratch: bool = False, slope: bool = False) -> Model:
+    learning = replace(LEARNING, scratch=scratch, rate=0.3, iterations=1) if scratch else LEARNING
+    setting = Setting(learning, groups, slope, {"encoder2.angle": 0.5})
+    return build(log().between(end_s=HEALTHY_S), 0, SILENT, setting)
+
+
+def shifted(path: str, start_s: float, by: float) -> Log:
+    value = log().value.copy()
+    value[log().time >= start_s, log().index(path)] += by
+    return replace(log(), value=value)
+
+
+def test_limits_are_given_or_those_of_the_tail_or_as_printed() -> None:
+    value, columns = log().between(end_s=HEALTHY_S), range(4)
+    sigma = noise(value.value[:, columns])
+    np.testing.assert_allclose(sigma, 3e-3, rtol=0.1)  # what two_joints puts in
+    limits = {slope: list(fitted(slope=slope).summary["limits"].values()) for slope in (False, True)}
+    np.testing.assert_allclose(limits[True][:3], (steps(value, columns) + 3 * sigma)[:3])
+    assert limits[False][3] == limits[True][3] == pytest.approx(0.5)
+    assert (np.array(limits[False][:3]) > 4 * np.array(fitted().sigma[:3])).all()
+    assert np.isinf(limits[False][4:]).all()
+    assert fitted().summary["inputs"] == ["drive1.torque", "drive2.torque"]
+    assert fitted().watched == (True, True, True, True, False, False)
+
+
+def test_in_groups_what_one_network_foretells_is_nothing_to_the_other() -> None:
+    model = fitted(groups=(ANGLES, RATES))
+    alone, moved = (detect(model, one) for one in (log(), shifted("tachometer1.rate", 44.0, 0.02)))
+    angles = [log().index(path) for path in ANGLES]
+    np.testing.assert_array_equal(alone.repaired[:, angles], moved.repaired[:, angles])
+    assert (alone.channel[1:, :4] == OK).mean() > 0.99
+    lied = detect(model, shifted("encoder1.angle", 44.0, 0.3))
+    assert next((event.sensor, event.start_s) for event in lied.events) == ("encoder1", pytest.approx(44.0))
+
+
+def test_from_scratch_it_is_unknown_until_it_has_learned() -> None:
+    part = log().between(HEALTHY_S)
+    told = detect(fitted(scratch=True), part)
+    known = (told.channel[:, :4] != UNKNOWN).all(axis=1)
+    first = int(np.argmax(known))
+    assert LEARNING.warm < first < 100
+    assert not known[:first].any()
+    assert (told.channel[first:, :4] == OK).mean() > 0.5
+
+
+def test_a_group_of_what_cannot_be_foretold() -> None:
+    with pytest.raises(LogError, match=r"drive1\.torque is marked watch = false; leave it out"):
+        build(log(), 0, SILENT, Setting(groups=(("drive1.torque",),)))
