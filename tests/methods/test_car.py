@@ -66,7 +66,7 @@ def test_without_a_receiver_the_inertial_unit_is_still_watched() -> None:
     made = recipe("car").build(alone, 0, Session())
     assert all(made.watched)
     assert "no position" in made.summary["cannot"]["motion-deficit"]
-    assert set(made.summary["cannot"]) == {"motion-deficit", "bicycle-kalman"}
+    assert set(made.summary["cannot"]) == {"motion-deficit", "bicycle-kalman", "side-force"}
 
 
 def test_without_an_inertial_unit_the_position_is_still_watched() -> None:

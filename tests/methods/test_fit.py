@@ -41,7 +41,8 @@ def default() -> Model:
 
 
 def test_the_catalog() -> None:
-    others = {"bp-autoencoder", "motion-deficit", "bicycle-kalman", "car", "online-network", "arm-kalman"}
+    of_motion = {"motion-deficit", "bicycle-kalman", "side-force", "car"}
+    others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion}
     assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, *others}
     assert DEFAULT == "relative-conditioning"
     for name, recipe in METHODS.items():

@@ -19,7 +19,9 @@ from sensorfault.training.tapes import score_tape
 from sensorfault.vehicles.car import roles
 
 CONSTANT_S = 0.3  # of the low pass: longer than a bump, shorter than the edge of a slide
-MEMORY_S = 2.0  # after a fault of a sensor nothing is said for so long
+# After a fault of a sensor nothing is said for so long [s]: an offset of the yaw rate that lasts, once it is taken for
+# the channel's own word again, is a slide as long as it lasts.
+MEMORY_S = 20.0
 PER_HOUR = 1.0  # false alarms
 MARGIN = 1.25  # on the limit, for what a drive of minutes has not shown
 

@@ -89,9 +89,6 @@ def fit_mounting(log: Log, found: Roles) -> Mounting:
         raise LogError(f"{log.name} has no {what}; the way the unit is mounted cannot be told without it.")
     time, speed, course = _ground(log, found)
     gyro, force = _sums(log, found.gyro), _sums(log, found.accelerometer)
-    mean = np.nanmean(log.value[:, found.accelerometer], axis=0)
-    up = mean / np.linalg.norm(mean)
-
     at = np.arange(log.time[0] + LATEST_S + WINDOW_S, log.time[-1] - 1.0, STEP_S)
     ends = np.stack([np.interp(at, time, speed), np.interp(at - WINDOW_S, time, speed)])
     at = at[(ends > LEAST_SPEED).all(axis=0)]
@@ -100,6 +97,8 @@ def fit_mounting(log: Log, found: Roles) -> Mounting:
             f"{log.name} moves faster than {LEAST_SPEED:g} m/s for {len(at) * STEP_S:.0f} s, telling how the unit is "
             f"mounted needs {LEAST_MOVING_S:g} s; give a drive that moves."
         )
+    mean = np.nanmean(log.value[:, found.accelerometer], axis=0)
+    up = mean / np.linalg.norm(mean)
     course_rate, speed_rate = (_rate(at, time, x) for x in (course, speed))
     for name, rate, least, unit in (
         ("turns", course_rate, _TURN, "rad/s"),
