@@ -25,15 +25,20 @@ PER_HOUR = 1.0
 MEMORY_S = 0.5  # a road is as rough as it was for so long
 
 
-def _build(log: Log, seed: int, session: Session) -> Model:
-    model = conditioned(RECIPE.name, log, levels=False, cross_validated=False)
+def build(log: Log, seed: int, session: Session, levels: bool = False) -> Model:
+    """Fit on a healthy log; with `levels` rows are conditioned on rows.
+
+    Raises:
+        LogError: too few complete rows, or nothing to watch.
+    """
+    model = conditioned(RECIPE.name, log, levels=levels, cross_validated=False)
     joint = model.monitor.branches[0]
     memory = MEMORY_S / log.period_s
     lowest, highest = roughness(score_tape(deaf(model.monitor), log)[0], memory)
     relative = Relative(joint.statistic, jnp.asarray(memory), jnp.asarray(lowest), jnp.asarray(highest))
     monitor = eqx.tree_at(lambda m: m.branches[0], model.monitor, replace(joint, statistic=relative))
     session.tell("scoring blocks left out of the fit")
-    limit = tail_limit(unseen_scores(deaf(monitor), in_a_row(RECIPE.name, log), levels=False), log.period_s, PER_HOUR)
+    limit = tail_limit(unseen_scores(deaf(monitor), in_a_row(RECIPE.name, log), levels), log.period_s, PER_HOUR)
     monitor = eqx.tree_at(lambda m: m.branches[0].threshold, monitor, Fixed(jnp.asarray(limit)))
     return replace(model, monitor=monitor, tests=(("mahalanobis, relative", None), *model.tests[1:]))
 
@@ -43,5 +48,5 @@ RECIPE = Recipe(
     title="Newest change given the three before it, against the roughness of the last half second",
     source="conditional mean of a Gaussian vector; the limit a tail of block maxima (Hosking & Wallis 1987)",
     promise="one false alarm an hour, extrapolated from the scores of blocks left out of the fit",
-    build=_build,
+    build=build,
 )
