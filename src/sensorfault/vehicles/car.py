@@ -64,7 +64,7 @@ def roles(log: Log) -> Roles:
         own = [i for i in all_of if log.channels[i].sensor == receiver]
         if all_of:
             found[name] = (own or all_of)[0]
-    return Roles(**found, gyro=_axes(log.channels, "rad/s"), accelerometer=_axes(log.channels, "m/s^2"))
+    return Roles(**found, gyro=axes(log.channels, "rad/s"), accelerometer=axes(log.channels, "m/s^2"))
 
 
 _NAMES = {
@@ -83,7 +83,7 @@ def _called(channel: Channel, name: str) -> bool:
     return channel.name in (name, *_ALSO.get(name, ()))
 
 
-def _axes(channels: tuple[Channel, ...], unit: str) -> tuple[int, int, int] | None:
+def axes(channels: tuple[Channel, ...], unit: str) -> tuple[int, int, int] | None:
     """Columns of x, y and z of the first sensor that has all three in this unit."""
     for sensor in dict.fromkeys(channel.sensor for channel in channels):
         at = {c.name: i for i, c in enumerate(channels) if c.sensor == sensor and si_unit(c.unit) == unit}
