@@ -12,7 +12,9 @@ from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
+from sensorfault.monitor.residual.height_kalman import HeightKalman
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
+from sensorfault.monitor.residual.multistep_observer import MultistepObserver
 from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
@@ -22,6 +24,7 @@ from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
 from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.exchange import Exchange
+from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.norm import Norm
@@ -33,12 +36,14 @@ from sensorfault.monitor.statistic.shortfall import Shortfall
 from sensorfault.monitor.statistic.slippage import Slippage
 from sensorfault.monitor.statistic.standing import Standing
 from sensorfault.monitor.statistic.whitened import Whitened
+from sensorfault.monitor.threshold.adaptive import Adaptive
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.monitor.threshold.sigma import Sigma
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
 from sensorfault.vehicles.arm import TwoLink
+from sensorfault.vehicles.height import Climb, StepNetwork
 from sensorfault.vehicles.inertial import Inertial, SideOn
 
 PARTS: dict[str, type[eqx.Module]] = {
@@ -53,6 +58,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Deficit, Shortfall, Standing, Slippage, Lasting),
         *(BicycleKalman, Columns, Whitened, Normality),
         *(ArmKalman, TwoLink),
+        *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),
         *(Drop, Rebuild),
