@@ -1,5 +1,7 @@
 """Which column of a log says what of an aircraft's height."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from sensorfault.logs.table import Channel, Log, Sensor
@@ -27,8 +29,10 @@ def test_who_says_how_high_it_flies() -> None:
             *(("accelerometer", axis, "m/s^2") for axis in "xyz"),
         )
     )
-    assert found == Roles(2, 0, 3, -1.0, 1, -1.0, 6, 4, 5, 7, (8, 9, 10))
+    assert found == Roles(2, 0, 3, -1.0, 1, -1.0, 6, None, 4, 5, 7, (8, 9, 10))
     assert found.inputs == (6, 5, 4)
+    assert found.unit == ()
+    assert replace(found, roll=11).unit == (6, 11, 8, 9, 10)
 
 
 def test_a_height_of_nobody_known_is_the_receivers() -> None:

@@ -10,12 +10,14 @@ from sensorfault.methods import (
     elm_autoencoder,
     elm_cross_validated,
     elm_robust,
+    kinematic_observer,
     linear_conditioning,
     linear_extrapolation,
     lstm_displacement,
     lstm_predictor,
     mlp_predictor,
     motion_deficit,
+    multistep_observer,
     online_network,
     pca,
     persistence,
@@ -44,6 +46,8 @@ _RECIPES = (
     car.RECIPE,
     online_network.RECIPE,
     arm_kalman.RECIPE,
+    multistep_observer.RECIPE,
+    kinematic_observer.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

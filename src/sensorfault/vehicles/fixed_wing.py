@@ -10,7 +10,7 @@ from sensorfault.vehicles.car import axes
 _RECEIVER, _BAROMETER = ("gnss", "gps"), ("baro", "pressure")
 _HEIGHT = ("altitude", "height")
 _CLIMB = {"up": 1.0, "climb": 1.0, "down": -1.0, "sink": -1.0}  # a vertical speed's name, and its sign upwards
-_INPUTS = {"pitch": "rad", "elevator": None, "throttle": None, "airspeed": "m/s"}
+_INPUTS = {"pitch": "rad", "roll": "rad", "elevator": None, "throttle": None, "airspeed": "m/s"}
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,8 @@ class Roles:
 
     `height`: of the satellite receiver [m]; `barometric`: the height that the air's pressure says [m]. `vertical`: the
     receiver's vertical speed [m/s]; times `upward` it is a climb. `inertial`: another sensor's vertical speed, with its
-    sign. `elevator` and `throttle` are commands or deflections in any unit. `accelerometer`: columns of x, y and z.
+    sign. `elevator` and `throttle` are commands or deflections in any unit. `accelerometer`: columns of x, y and z,
+    which point forward, right and down.
     """
 
     height: int | None = None
@@ -29,6 +30,7 @@ class Roles:
     inertial: int | None = None
     inertial_upward: float = 1.0
     pitch: int | None = None
+    roll: int | None = None
     elevator: int | None = None
     throttle: int | None = None
     airspeed: int | None = None
@@ -38,6 +40,13 @@ class Roles:
     def inputs(self) -> tuple[int, ...]:
         """What else the paper's network is told, as far as it is there: pitch, throttle and elevator."""
         return tuple(i for i in (self.pitch, self.throttle, self.elevator) if i is not None)
+
+    @property
+    def unit(self) -> tuple[int, ...]:
+        """Pitch, roll and the accelerometer's x, y and z, if all are there; else nothing."""
+        if self.pitch is None or self.roll is None or self.accelerometer is None:
+            return ()
+        return (self.pitch, self.roll, *self.accelerometer)
 
 
 def roles(log: Log) -> Roles:

@@ -1,0 +1,108 @@
+"""Paper D: the height of an aircraft foretold over N steps by a network, under a limit that follows its error."""
+
+from dataclasses import dataclass, field, replace
+from statistics import NormalDist
+
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods import observed
+from sensorfault.methods.observed import BLOCK_S, PER_HOUR, Heights
+from sensorfault.methods.recipe import Recipe
+from sensorfault.model import Model
+from sensorfault.monitor.residual.several import Several
+from sensorfault.monitor.statistic.horizons import Horizons
+from sensorfault.monitor.statistic.of import Of
+from sensorfault.monitor.threshold.adaptive import Adaptive
+from sensorfault.replay import replay_log
+from sensorfault.training.height_kalman import fit_height_kalman
+from sensorfault.training.limits import tail_limit
+from sensorfault.training.multistep import Schedule, train_steps
+from sensorfault.training.roll_out import errors
+from sensorfault.training.session import Session
+
+NAME = "multistep-observer"
+TAUGHT = 0.7  # of the healthy log; the limits come from the rest
+ALPHA = 0.01  # false alarms that the companion's chi-square test allows, as printed
+CHI_SQUARE = NormalDist().inv_cdf(1 - ALPHA / 2) ** 2  # of one degree of freedom
+LOUD = 1e9
+
+
+@dataclass(frozen=True)
+class Setting:
+    """`steps` N; 12 is the paper's best. `horizon_s`: a stand-in is believed for so long. `printed`: a = b = 1; by
+    default both are what the promise asks for.
+    """
+
+    steps: int = 12
+    horizon_s: float = 10.0
+    printed: bool = False
+    schedule: Schedule = field(default_factory=Schedule)
+
+
+def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
+    """Fit on a healthy log: the height from vertical speed, pitch, throttle and elevator, as far as the log has them.
+
+    Raises:
+        LogError: no height, nothing that foretells it, or too few measurements that follow each other.
+    """
+    heights = Heights.of(NAME, log)
+    climb = heights.roles.vertical if heights.roles.vertical is not None else heights.roles.inertial
+    columns = tuple(i for i in (climb, *heights.roles.inputs) if i is not None)
+    if not columns:
+        raise LogError(
+            f"{log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the height; "
+            "name the columns in vehicle.toml, or take another method."
+        )
+    cut = log.time[0] + TAUGHT * log.duration_s
+    session.tell(f"teaching a network over {setting.steps} steps")
+    taught = train_steps(heights.fixes(columns, end_s=cut), (setting.steps,), (seed,), setting.schedule)
+    (network,), unseen = taught.nets[0], heights.fixes(columns, cut)
+    watched = observed.observer(network, unseen, (setting.steps,), heights.column)
+    session.tell("measuring what it leaves")
+    companion = fit_height_kalman(log, heights.column, heights.roles)
+    mine = np.arange(len(log.channels)) == heights.column
+    residual = Several((watched, companion), jnp.asarray(np.stack([mine, mine & False])))
+    threshold = Adaptive(
+        a=jnp.ones(1),
+        b=jnp.ones(1),
+        typical=jnp.asarray([np.sqrt(np.mean(errors(network, unseen, setting.steps) ** 2))]),
+        chi_square=jnp.asarray(CHI_SQUARE),
+        part=1,
+        column=heights.column,
+    )
+    if not setting.printed:
+        threshold = _calibrated(heights, residual, threshold, setting, unseen.period_s, cut)
+    told = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), "a": float(threshold.a[0]), "b": float(threshold.b[0])}
+    watching = observed.monitor(log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s)
+    return observed.model(NAME, heights, watching, watched, unseen.period_s, told)
+
+
+def _statistic(heights: Heights) -> Of:
+    return Of(Horizons(heights.column), 0)
+
+
+def _calibrated(
+    heights: Heights, residual: Several, threshold: Adaptive, setting: Setting, period_s: float, cut: float
+) -> Adaptive:
+    """a = b such that a healthy log passes the limit as often as promised: from what was not learned from."""
+    loud = replace(threshold, a=threshold.a * LOUD, b=threshold.b * LOUD)
+    log = heights.log
+    watching = observed.monitor(log, residual, _statistic(heights), loud, setting.horizon_s, period_s)
+    tape = replay_log(watching, log)
+    ratio = np.asarray(tape.scores[0]) / np.asarray(tape.limits[0]) * LOUD
+    factor = tail_limit(ratio[log.time >= cut], log.period_s, PER_HOUR, BLOCK_S)
+    if not np.isfinite(factor).all():
+        raise LogError(f"{log.name} has no unbroken run of {setting.steps} steps of its height to set limits on.")
+    return replace(threshold, a=jnp.asarray(factor), b=jnp.asarray(factor))
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Height rolled out over 12 steps by a network that feeds back what it foretold, under a limit that follows a "
+    "companion filter and the observer's own error",
+    source="Wang S. et al., multi-step neural network observer of a flapping-wing aircraft",
+    promise=f"{PER_HOUR:g} false alarm an hour, from the tail of the residual over its limit on data not learned from",
+    build=build,
+)
