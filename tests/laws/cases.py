@@ -10,15 +10,18 @@ from dataclasses import replace
 import equinox as eqx
 import numpy as np
 
+import flown
 from laws.case import Case, limits_learned
 from laws.guests.zoo import zoo
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods import (
     ar_predictor,
     bp_autoencoder,
+    kinematic_observer,
     lstm_displacement,
     lstm_predictor,
     mlp_predictor,
+    multistep_observer,
     online_network,
 )
 from sensorfault.methods.catalog import METHODS
@@ -33,6 +36,7 @@ from sensorfault.run import samples
 from sensorfault.simulation.arm import PERIOD_S, run
 from sensorfault.simulation.road import drive
 from sensorfault.training.gradient import Plan
+from sensorfault.training.multistep import Schedule
 from sensorfault.training.online import Learning
 from sensorfault.training.session import Session
 
@@ -165,6 +169,34 @@ def two_joints(rows: int) -> Log:
     return Log(dt * np.arange(rows), value, np.ones(value.shape, bool), channels, sensors)
 
 
+OBSERVERS = {
+    "multistep-observer": functools.partial(
+        multistep_observer.build,
+        setting=multistep_observer.Setting(steps=5, horizon_s=3.0, schedule=Schedule(epochs=20, rate=1e-2)),
+    ),
+    "kinematic-observer": functools.partial(
+        kinematic_observer.build, setting=kinematic_observer.Setting((0.2, 1.0, 2.4), horizon_s=3.0)
+    ),
+}
+
+
+def observer(name: str) -> Case:
+    """An observer of the height in a part of the flight that it was not fitted on; without its inputs there is none."""
+    log = flown.flight()
+    monitor = OBSERVERS[name](log.between(end_s=160.0), 0, Session()).monitor
+    part = log.between(160.0)
+    inputs = (flown.DOWN,) if name == "kinematic-observer" else (flown.DOWN, flown.PITCH, flown.THROTTLE)
+    return Case(
+        name,
+        monitor,
+        samples(part.time, part.value, part.fresh),
+        lie=np.where(np.arange(5) == flown.HEIGHT, 20.0, 0.0),
+        back_s=3.0 + 12 * flown.FIX_S + 1.0,
+        named=(flown.HEIGHT,),
+        lost=dict.fromkeys(inputs, (flown.HEIGHT,)),
+    )
+
+
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
     """The monitor of a joint test and one of repeats, for its channels in another order."""
     residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
@@ -205,7 +237,8 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 ZOO = {case.name: case for case in zoo()}
 MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
-ALONE = {"motion-deficit": deficit, "car": whole_car, NETWORK: arm, "arm-kalman": two_links, **MOTION}
+HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS}
+ALONE = {"motion-deficit": deficit, "car": whole_car, NETWORK: arm, "arm-kalman": two_links, **MOTION, **HEIGHT}
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
 

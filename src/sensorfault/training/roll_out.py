@@ -2,31 +2,43 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
+from collections.abc import Sequence
+
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from sensorfault.training.fixes import Fixes
 from sensorfault.vehicles.height import Climb, StepNetwork
 
+WINDOWS = 512  # of each number of steps, lying evenly
 
-def errors(model: Climb | StepNetwork, fixes: Fixes, steps: int, most: int = 300) -> Float[np.ndarray, " W"]:
-    """Measured minus rolled out over so many steps [m], of unbroken windows; each starts from what was measured.
 
-    Whoever it is that errs: the model, the inputs, or the height at either end. Of more than `most` windows, so many
-    that lie evenly.
+def errors(model: Climb | StepNetwork, fixes: Fixes, steps: Sequence[int]) -> Float[np.ndarray, "M W"]:
+    """Measured minus rolled out over each of these numbers of steps [m], in WINDOWS unbroken windows (some of them more
+    than once where there are fewer, of which there must be one); each starts from what was measured.
+
+    Whoever it is that errs: the model, the inputs, or the height at either end.
     """
-    first = fixes.windows(steps)
-    first = first[np.linspace(0, len(first) - 1, min(len(first), most)).round().astype(int)]
-    at = first[:, None] + np.arange(steps + 1)
-    rolled = _rolled(model, *(jnp.asarray(x[at]) for x in (fixes.height, fixes.inputs, fixes.time)))
-    return np.asarray(fixes.height[at[:, -1]] - np.asarray(rolled))
+    first = [fixes.windows(n) for n in steps]
+    start = [w[np.linspace(0, len(w) - 1, WINDOWS).round().astype(int)] for w in first]
+    end = np.stack([s + n for s, n in zip(start, steps, strict=True)])
+    # one shape for all, so one compilation: what lies before the start is not looked at
+    at = np.maximum(end[..., None] - np.arange(max(steps), -1, -1), 0)
+    rolled = _rolled(model, *(jnp.asarray(x[at]) for x in (fixes.height, fixes.inputs, fixes.time)), jnp.asarray(steps))
+    return np.asarray(fixes.height[end] - np.asarray(rolled))
 
 
 @jax.jit
 def _rolled(
-    model: Climb | StepNetwork, height: Float[Array, "W P"], inputs: Float[Array, "W P U"], time: Float[Array, "W P"]
-) -> Float[Array, " W"]:
-    steps = jnp.asarray([height.shape[1] - 1])
-    return jax.vmap(lambda h, x, t: model.rolled(h[:-1], x, t, steps)[0])(height, inputs, time)
+    model: Climb | StepNetwork,
+    height: Float[Array, "M W P"],
+    inputs: Float[Array, "M W P U"],
+    time: Float[Array, "M W P"],
+    steps: Int[Array, " M"],
+) -> Float[Array, "M W"]:
+    def one(h: Array, x: Array, t: Array, n: Array) -> Array:
+        return model.rolled(h[:-1], x, t, n[None])[0]
+
+    return jax.vmap(lambda h, x, t, n: jax.vmap(lambda h, x, t: one(h, x, t, n))(h, x, t))(height, inputs, time, steps)
