@@ -32,10 +32,10 @@ from sensorfault.studies.niu1998.isolation import (
     trials,
 )
 from sensorfault.studies.niu1998.joints import APART
-from sensorfault.studies.niu1998.numbers import Numbers
 from sensorfault.studies.niu1998.rivals import KALMAN, NETWORK, SCRATCH, Rival, of_six_joints, of_two_links
 from sensorfault.studies.niu1998.run import Watched, early, first, found_soon, increment_error, joined, theta
 from sensorfault.studies.niu1998.schunk import runs
+from sensorfault.studies.numbers import Numbers
 from sensorfault.training.session import SILENT
 from sensorfault.types import FAULT, OK, UNKNOWN
 
@@ -97,7 +97,7 @@ def test_when_drifts_are_found() -> None:
 
 
 def test_the_smallest_drift_has_no_hole_above_it() -> None:
-    numbers = Numbers("arm", "simulated")
+    numbers = Numbers("B", "arm", "simulated")
     for rate, share in ((2.0, 1.0), (1.0, 0.96), (0.5, 0.9), (0.1, 1.0)):
         numbers.add("y2", "good", {"detection_rate": share}, "drift", rate)
     assert smallest(numbers, "y2", "good", (0.1, 0.5, 1.0, 2.0)) == 1.0
@@ -105,7 +105,7 @@ def test_the_smallest_drift_has_no_hole_above_it() -> None:
 
 
 def test_numbers_become_rows() -> None:
-    numbers = Numbers("arm", "simulated")
+    numbers = Numbers("B", "arm", "simulated")
     for value in (0.5, 1.0):
         numbers.add("as-printed", "good", {"far": value}, "drift")
     (row,) = numbers.rows()

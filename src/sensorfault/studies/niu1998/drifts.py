@@ -10,7 +10,6 @@ from sensorfault.model import Model
 from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL
 from sensorfault.studies.findings import Effort, Row
 from sensorfault.studies.niu1998.fleet import Told, watch, with_limits
-from sensorfault.studies.niu1998.numbers import Numbers
 from sensorfault.studies.niu1998.rivals import KALMAN, Rival, of_two_links
 from sensorfault.studies.niu1998.run import (
     COLUMNS,
@@ -25,6 +24,7 @@ from sensorfault.studies.niu1998.run import (
     increment_error,
     theta,
 )
+from sensorfault.studies.numbers import Numbers
 
 SETTINGS = {"as-printed": AS_PRINTED, "physical": PHYSICAL}
 ELSEWHERE = replace(AS_PRINTED, start=(11.0, -8.2, 0.8, 1.9))
@@ -42,7 +42,7 @@ NAMES = ("y2", "y4")
 class Drifts:
     """Numbers of all rivals, and what the first network of the first seed said of the paper's run."""
 
-    numbers: Numbers = field(default_factory=lambda: Numbers("arm", "simulated"))
+    numbers: Numbers = field(default_factory=lambda: Numbers("B", "arm", "simulated"))
     shown: dict[str, tuple[Told, Float[np.ndarray, "N T C"]]] = field(default_factory=dict)
 
     def rows(self) -> Iterator[Row]:

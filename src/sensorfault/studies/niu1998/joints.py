@@ -23,10 +23,10 @@ from sensorfault.studies.niu1998.isolation import (
     stretches,
     trials,
 )
-from sensorfault.studies.niu1998.numbers import Numbers
 from sensorfault.studies.niu1998.rivals import NETWORK, Rival, of_six_joints
 from sensorfault.studies.niu1998.run import joined
 from sensorfault.studies.niu1998.schunk import ARCHIVE, JOINTS, PERIOD_S, runs
+from sensorfault.studies.numbers import Numbers
 
 DATA = "schunk"
 EACH, QUICK_EACH = 8, 3  # faults of every kind and size on every sensor, for each seed
@@ -42,8 +42,8 @@ SHOWN, ALL = "far1e-2", "all"
 class Joints:
     """Numbers of all rivals; whom the network accused, at five times its one-step errors, for each faulty sensor."""
 
-    injected: Numbers = field(default_factory=lambda: Numbers(DATA, "injected"))
-    real: Numbers = field(default_factory=lambda: Numbers(DATA, "real"))
+    injected: Numbers = field(default_factory=lambda: Numbers("B", DATA, "injected"))
+    real: Numbers = field(default_factory=lambda: Numbers("B", DATA, "real"))
     accused: Int[np.ndarray, "12 13"] = field(default_factory=lambda: np.zeros((SENSORS, SENSORS + 1), int))
 
 

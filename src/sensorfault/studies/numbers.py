@@ -8,8 +8,6 @@ import numpy as np
 
 from sensorfault.studies.findings import Row
 
-EXPERIMENT = "B"
-
 
 class Key(NamedTuple):
     """What a number is of; see Row."""
@@ -23,8 +21,9 @@ class Key(NamedTuple):
 
 @dataclass
 class Numbers:
-    """Of one kind of data."""
+    """Of one experiment on one kind of data."""
 
+    experiment: str
     data: str
     source: str
     values: dict[Key, list[float]] = field(default_factory=dict)
@@ -53,7 +52,7 @@ class Numbers:
         for (condition, method, fault, size, metric), values in self.values.items():
             spread = float(np.std(values, ddof=1)) if len(values) > 1 else None
             yield Row(
-                experiment=EXPERIMENT,
+                experiment=self.experiment,
                 data=self.data,
                 source=self.source,
                 condition=condition,
