@@ -114,8 +114,7 @@ def train_steps(
     parts = [np.asarray(x, float) for x in weights]
 
     def net(k: int) -> StepNetwork:
-        n = steps[k % len(steps)] if schedule.separate else 1
-        w, b, v, c = (jnp.asarray(part[k, :n]) for part in parts)
+        w, b, v, c = (jnp.asarray(part[k]) for part in parts)
         c0, h0, u0, p0 = (jnp.asarray(x) for x in (center, half, unit, fixes.period_s))
         return StepNetwork(w, b, v, c, c0, h0, u0, p0, fixes.columns)
 

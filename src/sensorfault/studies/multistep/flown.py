@@ -1,0 +1,107 @@
+"""A flight from fix to fix, cut into a part to learn from and one to judge, and the ramps laid on its height."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from sensorfault.logs.table import Log, Sensor
+from sensorfault.training.fixes import Fixes
+from sensorfault.vehicles.fixed_wing import Roles, roles
+
+LEARN = 0.7  # of the flight
+SLOPES = tuple(round(0.1 * i, 1) for i in range(1, 11))  # [m/s]
+EVERY, FAULTY = 150, 400  # steps from one onset to the next, and of a fault, or to the end of the flight
+LEAST = 50  # steps that a fault must have
+
+
+@dataclass(frozen=True)
+class Flown:
+    """All rows are new heights; what else the observers use stands as last measured.
+
+    `start`: the first row that is judged.
+    """
+
+    log: Log
+    start: int
+
+    @classmethod
+    def of(cls, flight: Log) -> "Flown":
+        """Out of a whole flight on a faster clock.
+
+        Raises:
+            LogError: too few heights.
+        """
+        found = roles(flight)
+        columns = [found.height, found.vertical, found.barometric, found.inertial, *found.inputs]
+        kept = flight.select(flight.channels[c].path for c in columns if c is not None)
+        fixes = Fixes.of(kept, 0, tuple(range(1, len(kept.channels))))
+        value = np.column_stack([fixes.height, fixes.inputs])
+        sensors = tuple(Sensor(sensor.name, fixes.period_s) for sensor in kept.sensors)
+        log = replace(kept, time=fixes.time, value=value, fresh=np.isfinite(value), sensors=sensors)
+        return cls(log, int(np.searchsorted(fixes.time, fixes.time[0] + LEARN * log.duration_s)))
+
+    @property
+    def roles(self) -> Roles:
+        """Columns of `log`."""
+        return roles(self.log)
+
+    @property
+    def learn(self) -> Log:
+        """The part to learn from."""
+        return self.log.between(end_s=float(self.log.time[self.start]))
+
+    @property
+    def judge(self) -> Log:
+        """The part to judge."""
+        return self.log.between(float(self.log.time[self.start]))
+
+
+@dataclass(frozen=True)
+class Ramps:
+    """Cell 0 has no fault; then every slope at every onset. `height`: of each cell [m]."""
+
+    log: Log
+    height: Float[np.ndarray, "N T"]
+    slope: Float[np.ndarray, " N"]
+    onset: Int[np.ndarray, " N"]
+
+    @classmethod
+    def on(cls, log: Log, slopes: tuple[float, ...] = SLOPES, every: int = EVERY) -> "Ramps":
+        """From step `every` on, for as long as there is room."""
+        onsets = np.arange(every, len(log) - LEAST, every)
+        cells = [(0.0, 0), *((slope, int(onset)) for slope in slopes for onset in onsets)]
+        slope, onset = (np.array(x) for x in zip(*cells, strict=True))
+        since = np.maximum(log.time[None] - log.time[onset][:, None], 0.0)
+        return cls(log, log.value[:, 0] + slope[:, None] * since, slope, onset)
+
+    @property
+    def logs(self) -> list[Log]:
+        """One log a cell."""
+        columns = [np.column_stack([height, self.log.value[:, 1:]]) for height in self.height]
+        return [replace(self.log, value=value) for value in columns]
+
+    def span(self, cell: int) -> slice:
+        """The faulty rows of a cell that count."""
+        return slice(int(self.onset[cell]), min(int(self.onset[cell]) + FAULTY, len(self.log)))
+
+
+@dataclass(frozen=True)
+class Count:
+    """What the alarms of one monitor say of all ramps of one slope, or of the same spans without any.
+
+    `rate`: share of faulty steps that are flagged; `delay`: steps to the first alarm, all of them where there is none;
+    `missed`: share of the ramps without one. Means over the ramps.
+    """
+
+    rate: float
+    delay: float
+    missed: float
+
+
+def count(ramps: Ramps, alarm: Bool[np.ndarray, "N T"], cells: Int[np.ndarray, " n"], fault: bool = True) -> Count:
+    """Over these cells; with `fault` False, over their spans in the flight without a fault."""
+    told = [alarm[cell if fault else 0, ramps.span(int(cell))] for cell in cells]
+    first = [int(np.argmax(each)) if each.any() else len(each) for each in told]
+    rate, missed = np.mean([each.mean() for each in told]), np.mean([not each.any() for each in told])
+    return Count(float(rate), float(np.mean(first)), float(missed))
