@@ -31,7 +31,7 @@ class SensorEntry:
 
 @dataclass(frozen=True)
 class FileEntry:
-    """One file and its clock."""
+    """One file, or one `table` of a file that holds several, and its clock."""
 
     name: str = "log"
     path: str | None = None
@@ -39,5 +39,6 @@ class FileEntry:
     unit: str = "s"
     offset_s: float = 0.0
     tag: str | None = None
+    table: str | None = None
     why: str = field(default="", compare=False)
     left_out: tuple[tuple[str, str], ...] = field(default=(), compare=False)

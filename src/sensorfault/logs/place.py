@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.readers.formats import READERS
+from sensorfault.logs.readers.formats import SUFFIXES
 from sensorfault.logs.readers.npy import called_by
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
@@ -24,10 +24,10 @@ def files_of(path: Where) -> list[Path]:
         if not files:
             raise LogError("no file was named; name a file, a folder or several files of one drive.")
     elif Path(path).is_dir():
-        files = [file for file in Path(path).iterdir() if file.is_file() and file.suffix.lower() in READERS]
+        files = [file for file in Path(path).iterdir() if file.is_file() and file.suffix.lower() in SUFFIXES]
         files = sorted({called_by(file) if file.suffix.lower() == ".npy" else file for file in files})
         if not files:
-            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(READERS)} there.")
+            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(SUFFIXES)} there.")
     else:
         files = [Path(path)]
     for file in files:
@@ -61,14 +61,15 @@ def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> Vehic
 def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]]:
     """Each described file with the file that it describes.
 
-    One description and one file belong together whatever its name, so that one vehicle.toml serves many drives.
+    Where one file is described and there is one, they belong together whatever its name, so that one vehicle.toml
+    serves many drives.
 
     Raises:
         LogError: a described file is not among those of the log.
     """
     files = files_of(path)
-    if len(vehicle.files) == 1 and len(files) == 1:
-        return [(vehicle.files[0], files[0])]
+    if len({entry.path for entry in vehicle.files}) == 1 and len(files) == 1:
+        return [(entry, files[0]) for entry in vehicle.files]
     pairs = []
     for entry in vehicle.files:
         if entry.path is None:

@@ -40,7 +40,7 @@ def read(path: Where, vehicle: str | Path | VehicleFile | None = None, resample:
     for entry, file in pair_files(known, path):
         sensors = tuple(sensor for sensor in known.sensors if sensor.file == entry.name)
         if sensors:
-            streams.append(read_stream(read_source(file), entry, sensors))
+            streams.append(read_stream(read_source(file, entry.table), entry, sensors))
     clock = put_on_one_clock(streams, resample)
     said = tuple(note for stream in streams for note in stream.notes)
     return _log(known, streams, clock, (*notes, *said, *clock.notes))

@@ -8,9 +8,8 @@ from sensorfault.logs.entries import FileEntry, SensorEntry
 def file_lines(file: FileEntry) -> list[str]:
     """The table [file.NAME]."""
     lines = [f"[file.{key_of(file.name)}]"]
-    lines += [
-        f"{key} = {quote(value)}" for key, value in (("path", file.path), ("time", file.time)) if value is not None
-    ]
+    names = {"path": file.path, "table": file.table, "time": file.time}
+    lines += [f"{key} = {quote(value)}" for key, value in names.items() if value is not None]
     lines.append(f"unit = {quote(file.unit)}" + remark(file.why))
     if file.offset_s:
         lines.append(f"offset_s = {file.offset_s!r}")

@@ -12,6 +12,7 @@ path = "drive.csv"         # beside this file; may be left out if the log is one
 time = "millis"            # columns of a headerless file are c1, c2, ...; may be left out for .pos
 unit = "ms"                # s ms us ns iso8601
 offset_s = 0.0             # added to this file's time, to put it on the common clock
+table = "GPS"              # optional: which one, where a file holds several tables (.bin, .mat)
 tag = "imu.csv.tag"        # optional: RTKLIB's time tag, which ties a counter to GPS time
 
 [sensor.gnss]
@@ -122,15 +123,14 @@ def _vehicle(top: TomlTable, where: str) -> VehicleFile:
 
 
 def _file(name: str, table: TomlTable) -> FileEntry:
-    table.only("path", "time", "unit", "offset_s", "tag")
+    table.only("path", "time", "unit", "offset_s", "tag", "table")
     unit = table.text("unit") or "s"
     if unit not in TIME_UNITS:
         raise LogError(
             f"{table.where}: [{table.path}] unit = '{unit}' is no unit of time; take one of {', '.join(TIME_UNITS)}."
         )
-    return FileEntry(
-        name, table.text("path"), table.text("time"), unit, table.number("offset_s") or 0.0, table.text("tag")
-    )
+    offset = table.number("offset_s") or 0.0
+    return FileEntry(name, table.text("path"), table.text("time"), unit, offset, table.text("tag"), table.text("table"))
 
 
 def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> SensorEntry:

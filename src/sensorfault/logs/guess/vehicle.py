@@ -11,8 +11,9 @@ from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY, measurements
 from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.place import Where, files_of
-from sensorfault.logs.readers.formats import read_source
+from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.npy import name_of
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -28,6 +29,11 @@ class _Guess:
     clock: Clock
     sensors: list[SensorEntry]
 
+    @property
+    def stem(self) -> str:
+        """What it is called: its table, or its file where that holds one."""
+        return self.file.table or _stem(self.path)
+
 
 def guess(path: Where) -> VehicleFile:
     """Describe a log from its names and values.
@@ -35,22 +41,29 @@ def guess(path: Where) -> VehicleFile:
     Raises:
         LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
     """
-    files, guesses, notes = files_of(path), [], []
+    files, guesses, errors = files_of(path), [], []
     for file in files:
         try:
-            guesses.append(_guess_file(file))
+            tables = read_tables(file)
         except LogError as error:
-            if len(files) == 1:
-                raise
-            notes.append(f"Left out: {error}")
+            errors.append(error)
+            continue
+        for name, source in tables.items():
+            try:
+                guesses.append(_guess_table(source, name if len(tables) > 1 else None))
+            except LogError as error:
+                errors.append(error if len(tables) == 1 else LogError(f"{error} (table {name})"))
     if not guesses:
-        raise LogError(
-            f"{path}: none of its {len(files)} files is a log; the first: {notes[0].removeprefix('Left out: ')}"
+        raise (
+            errors[0]
+            if len(errors) == 1
+            else LogError(f"{path}: none of its {len(errors)} files or tables is a log; the first: {errors[0]}")
         )
+    notes = [f"Left out: {error}" for error in errors]
     _refuse_several_drives(guesses)
     guesses, raw = _calibrated(guesses)
     guesses.sort(key=_octave)
-    names = ["log"] if len(guesses) == 1 else _short_names([one.path for one in guesses])
+    names = ["log"] if len(guesses) == 1 else _short_names(guesses)
     taken = [sensor.name for one in guesses for sensor in one.sensors]
     sensors = [
         replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else _joined(name, sensor.name))
@@ -62,8 +75,8 @@ def guess(path: Where) -> VehicleFile:
     return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
 
 
-def _guess_file(path: Path) -> _Guess:
-    source = read_source(path)
+def _guess_table(source: Source, table: str | None) -> _Guess:
+    path = source.path
     head = replace(source, frame=source.frame.head(_ROWS))
     time, unit, why = guess_time(head)
     clock = read_clock(head, time, unit)
@@ -75,7 +88,13 @@ def _guess_file(path: Path) -> _Guess:
     tag = path.with_name(path.name + ".tag")
     has_tag = tag.is_file() and not clock.is_unix
     file = FileEntry(
-        path=path.name, time=time, unit=unit, tag=tag.name if has_tag else None, why=why, left_out=tuple(left_out)
+        path=path.name,
+        time=time,
+        unit=unit,
+        tag=tag.name if has_tag else None,
+        table=table,
+        why=why,
+        left_out=tuple(left_out),
     )
     return _Guess(path, tuple(source.frame.columns), file, clock, guess_sensors(head, columns, clock))
 
@@ -87,7 +106,7 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
             start = max(one.clock.zero_s, other.clock.zero_s)
             end = min(guess.clock.zero_s + float(guess.clock.time[-1]) for guess in (one, other))
             together = one.clock.is_unix and other.clock.is_unix and start < end
-            if one.columns == other.columns and not together:
+            if one.columns == other.columns and one.path != other.path and not together:
                 raise LogError(
                     f"{one.path.parent}: {other.path.name} and {one.path.name} have the same columns and look like two "
                     "drives; name the files of one drive."
@@ -96,8 +115,8 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
 
 def _calibrated(guesses: list[_Guess]) -> tuple[list[_Guess], list[str]]:
     """The files without those that hold another's raw readings: one device must not vouch for itself."""
-    known = {_stem(one.path) for one in guesses}
-    raw = [one for one in guesses if _stem(one.path).removesuffix(_RAW) in known - {_stem(one.path)}]
+    known = {one.stem for one in guesses}
+    raw = [one for one in guesses if one.stem.removesuffix(_RAW) in known - {one.stem}]
     notes = [f"{one.path.name}: left out, the readings of another file's sensor before calibration." for one in raw]
     return [one for one in guesses if one not in raw], notes
 
@@ -136,12 +155,12 @@ def _stem(path: Path) -> str:
     return name_of(path).split("__")[-1] if path.suffix.lower() == ".npy" else path.stem
 
 
-def _short_names(paths: list[Path]) -> list[str]:
-    """File names without what they share and without numbers, where they stay apart."""
-    stems = [_stem(path) for path in paths]
+def _short_names(guesses: list[_Guess]) -> list[str]:
+    """Names of files and tables without what they share and without numbers, where they stay apart."""
+    stems = [one.stem for one in guesses]
     apart = (i for i, letters in enumerate(zip(*stems, strict=False)) if len(set(letters)) > 1)
     start = stems[0].rfind("_", 0, next(apart, 0)) + 1
     short = [re.sub(r"\W+", "_", re.sub(r"(_\d+)+$", "", stem[start:])).strip("_").lower() for stem in stems]
     if len(set(short)) == len(short) and all(short):
         return short
-    return [re.sub(r"\W+", "_", path.name).lower() for path in paths]
+    return [re.sub(r"\W+", "_", f"{one.path.name}_{one.file.table or ''}").strip("_").lower() for one in guesses]

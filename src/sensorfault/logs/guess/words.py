@@ -10,11 +10,11 @@ _QUALITY = re.compile(
     r"(^|_)([ghptv]dop|dop|ep[ehv]|sd[neu]+|sdv[neu]+|std|stddev|sigma|cov(ariance)?|var(iance)?|accuracy|acc_?est|"
     r"fix|fix_?type|fix_?quality|quality|q|ns|sats?|satellites?|numsats?|num_?sv|ratio|age|confidence|noise|jamming|"
     r"rssi|nsd|snr|cn0|valid|ok|status|state|mode|flags?|health|error|errors|error_?count|count|counter|id|seq|"
-    r"progress|week|leap|cycle|enabled|present|delta|reset|ref|max|min|terrain|setpoint|sp)(_|$)"
+    r"progress|week|leap|cycle|enabled|present|delta|reset|ref|max|min|terrain|setpoint|sp|des|desired|cmd|command|bias)(_|$)"
 )
 _TIME = re.compile(
     r"(^|_)(time|timestamp|stamp|t|tow|gps_?tow|itow|epoch|utc|date|datetime|millis|micros|msec|usec|clock|"
-    r"time_?startup|seconds|secs?)(_|$)|^time|time$|timestamp"
+    r"time_?startup|etime|seconds|secs?)(_|$)|^time|time$|timestamp"
 )
 _AXIS = r"(?P<axis>[xyz]|[nedu]|north|east|down|up|lateral|longitudinal|vertical|forward|left|right)"
 
@@ -27,12 +27,15 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
         ("accelerometer", rf"(^|_)(a|acc|accel|acceleration|accelerometer|specific_force)_?{_AXIS}$"),
         ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|compass)_?{_AXIS}$"),
         ("quaternion", r"(^|_)(q|quat|quaternion|orientation)_?(?P<axis>[0-3wxyz])$"),
-        ("attitude", r"(^|_)(?P<axis>roll|pitch)$"),
-        ("heading", r"(^|_)(?P<axis>yaw|heading|course|cog|hdt|hdg|track|azimuth|orientation)$"),
+        ("attitude", r"(^|_)(?P<axis>roll|pitch)(_of_quaternion)?$|^(?P<alone>phi|theta)$"),
+        (
+            "heading",
+            r"(^|_)(?P<axis>yaw|heading|course|cog|hdt|hdg|track|azimuth|orientation|g?crs)(_of_quaternion)?$|^(?P<alone>psi)$",
+        ),
         ("wheels", r"(^|_)wheel_?speeds?_(?P<axis>[a-z]+(_[a-z]+)*)$"),
         ("airspeed", r"(^|_)(?P<axis>([a-z]+_)?air_?speed(_[a-z]+)?|ias|tas)$"),
         ("velocity", rf"(^|_)(v|vel|velocity|wind_?speed)_?{_AXIS}$"),
-        ("speed", r"(^|_)(?P<axis>speed|sog|ground_?speed|vel|velocity|wheel_?speed)$"),
+        ("speed", r"(^|_)(?P<axis>speed|sog|spd|ground_?speed|vel|velocity|wheel_?speed)$"),
         ("steering", r"(^|_)(steer(ing)?|road_?wheel)(_?wheel)?_?(?P<axis>angle)$"),
         ("position", r"(^|_)(?P<axis>lat|latitude|lon|lng|longitude)$"),
         ("height", r"(^|_)(?P<axis>alt|altitude|height|hgt|elevation|altitude_filtered|orthometric_height)(_|$)"),
@@ -47,8 +50,10 @@ _CHANNEL = {
     "roll": "roll", "pitch": "pitch", "yaw": "yaw", "lat": "latitude", "lon": "longitude", "lng": "longitude",
     "alt": "altitude", "hgt": "height", "cog": "course", "hdt": "heading", "hdg": "heading", "sog": "speed",
     "n": "north", "e": "east", "d": "down", "u": "up", "vel": "speed", "velocity": "speed", "pres": "pressure",
-    "temp": "temperature", "baro": "pressure",
+    "temp": "temperature", "baro": "pressure", "spd": "speed", "crs": "course", "gcrs": "course", "phi": "roll",
+    "theta": "pitch", "psi": "yaw",
 }  # fmt: skip
+_STEM = {"bar": "baro"}  # DataFlash's BarAlt
 _GYRO_AXIS = {"roll": "x", "pitch": "y", "yaw": "z"}
 
 # Units written as the end of a name.
@@ -98,7 +103,7 @@ def _channel(kind: str, axis: str) -> str:
 
 def _stem(name: str, match: re.Match[str]) -> str:
     rest = (name[: match.start()].strip("_"), name[match.end() :].strip("_"))
-    return "_".join(part for part in rest if part)
+    return "_".join(_STEM.get(part, part) for part in rest if part)
 
 
 def _by_unit(name: str, unit: str) -> tuple[str, str, str]:

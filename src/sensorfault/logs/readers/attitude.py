@@ -1,0 +1,25 @@
+"""Roll, pitch and yaw out of an autopilot's quaternion, which says the same but cannot be read."""
+
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+
+from sensorfault.logs.readers.source import Source
+
+_QUATERNION = tuple(f"q[{i}]" for i in range(4))  # as PX4 writes it: w, x, y, z, from body to north-east-down
+ANGLES = ("roll_of_quaternion [rad]", "pitch_of_quaternion [rad]", "yaw_of_quaternion [rad]")
+
+
+def with_attitude(source: Source) -> Source:
+    """The same file with the angles of q[0] to q[3] as further columns, if it has those."""
+    frame = source.frame
+    if not all(name in frame.columns and frame[name].dtype.is_numeric() for name in _QUATERNION):
+        return source
+    w, x, y, z = (frame[name].cast(pl.Float64).to_numpy() for name in _QUATERNION)
+    # roll = atan2(2(wx + yz), 1 - 2(x² + y²)), pitch = asin 2(wy - zx), yaw = atan2(2(wz + xy), 1 - 2(y² + z²))
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    angles = [pl.Series(name, angle) for name, angle in zip(ANGLES, (roll, pitch, yaw), strict=True)]
+    return replace(source, frame=frame.with_columns(angles))
