@@ -1,6 +1,6 @@
 """Who is compared: observers of one flight, one for each number of steps and seed, watched all at once."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sensorfault._jax  # isort: skip  # noqa: F401
@@ -25,9 +25,8 @@ from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.threshold.adaptive import Adaptive
-from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.run import replay, samples
-from sensorfault.studies.multistep.flown import Flown, Ramps
+from sensorfault.studies.multistep.flown import Flown
 from sensorfault.training.fixes import Fixes
 from sensorfault.training.height_kalman import fit_height_kalman
 from sensorfault.training.multistep import Schedule, Trained, train_steps
@@ -36,8 +35,7 @@ from sensorfault.types import FAULT, Report, Sample
 from sensorfault.vehicles.height import Climb, StepNetwork
 
 NETWORK, KINEMATIC = multistep_observer.NAME, kinematic_observer.NAME
-HORIZON_S = 30.0  # for which what was rolled out stands in, in closed loop
-LOUD = 1e9
+HORIZON_S = 10.0  # for which what was rolled out stands in, in closed loop
 
 
 @dataclass(frozen=True)
@@ -51,7 +49,10 @@ class Seen:
 
 @dataclass(frozen=True)
 class Contender:
-    """K observers of one kind: `steps[k]` of each, of `seeds` seeds one after the other. `variant` names the kind."""
+    """K observers of one kind: `steps[k]` of each, of `seeds` seeds one after the other. `variant` names the kind.
+
+    `typical`: root mean square of each one's healthy residual on the part that was learned from [m].
+    """
 
     method: str
     variant: str
@@ -59,6 +60,7 @@ class Contender:
     seeds: int
     flown: Flown
     observers: tuple[MultistepObserver, ...]
+    typical: tuple[float, ...]
     companion: HeightKalman
     trained: Trained | None = None
 
@@ -66,19 +68,22 @@ class Contender:
         """Those with so many steps, one a seed."""
         return [k for k, n in enumerate(self.steps) if n == steps]
 
-    def monitors(
-        self, threshold: Callable[[int], Adaptive | Fixed], closed: bool = False, which: Sequence[int] | None = None
-    ) -> Monitor:
-        """All of them (or these) in one, on a leading axis. `closed`: what alarms is kept out of the next roll-outs."""
-        made = [self._monitor(k, threshold(k), closed) for k in (range(len(self.steps)) if which is None else which)]
+    def monitors(self, factor: Float[np.ndarray, " K"], closed: bool = False) -> Monitor:
+        """All of them in one, on a leading axis, under the limits factor (T_EKF + E).
+
+        `closed`: what alarms is kept out of the next roll-outs; else all is believed, as in the paper.
+        """
+        made = [self._monitor(k, float(f), closed) for k, f in enumerate(factor)]
         stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *made)
         return stacked
 
-    def _monitor(self, k: int, threshold: Adaptive | Fixed, closed: bool) -> Monitor:
+    def _monitor(self, k: int, factor: float, closed: bool) -> Monitor:
         log = self.flown.log
         channels = len(log.channels)
         mine = np.arange(channels) == 0
         period_s = log.sensors[0].period_s
+        own, start = jnp.asarray([factor]), jnp.asarray(self.typical[k : k + 1])
+        threshold = Adaptive(own, own, start, jnp.asarray(CHI_SQUARE), part=1, column=0)
         return Monitor(
             residual=Several((self.observers[k], self.companion), jnp.asarray(np.stack([mine, mine & False]))),
             branches=(Branch(Of(Horizons(0), 0), threshold, gates=closed),),
@@ -88,13 +93,17 @@ class Contender:
             owner=owners(log.channels, log.sensors),
         )
 
-    def adaptive(self, a: float, b: float, k: int) -> Adaptive:
-        """a T_EKF + b E; E begins with what the observer errs on the part that was learned from."""
-        observer = self.observers[k]
-        fixes = Fixes.of(self.flown.learn, 0, observer.model.columns)
-        typical = float(np.sqrt(np.mean(errors(observer.model, fixes, (self.steps[k],)) ** 2)))
-        own, own_error, start = (jnp.asarray([x]) for x in (a, b, typical))
-        return Adaptive(own, own_error, start, jnp.asarray(CHI_SQUARE), part=1, column=0)
+    def rms(self, part: Log) -> Float[np.ndarray, " K"]:
+        """Root mean square of each one's roll-outs on a healthy part of the flight [m]."""
+        return np.array(
+            [_rms(o.model, part, n, max(self.steps)) for o, n in zip(self.observers, self.steps, strict=True)]
+        )
+
+
+def _rms(model: Climb | StepNetwork, part: Log, steps: int, longest: int) -> float:
+    """Of so many steps; with the longest beside them, so that all are one compilation."""
+    told = errors(model, Fixes.of(part, 0, model.columns), (steps, longest))
+    return float(np.sqrt(np.mean(told[0] ** 2)))
 
 
 def network(flown: Flown, steps: tuple[int, ...], seeds: int, separate: bool = False) -> Contender:
@@ -129,8 +138,9 @@ def _contender(
     every = steps * seeds
     first = observed.observer(models[0], fixes, (max(steps),), 0)
     made = [replace(first, model=model, steps=jnp.asarray([n])) for model, n in zip(models, every, strict=True)]
+    typical = [_rms(model, flown.learn, n, max(steps)) for model, n in zip(models, every, strict=True)]
     companion = fit_height_kalman(flown.learn, 0, flown.roles)
-    return Contender(method, variant, every, seeds, flown, tuple(made), companion, trained)
+    return Contender(method, variant, every, seeds, flown, tuple(made), tuple(typical), companion, trained)
 
 
 def watch(monitors: Monitor, logs: Sequence[Log]) -> Seen:
@@ -139,11 +149,6 @@ def watch(monitors: Monitor, logs: Sequence[Log]) -> Seen:
     cells = [samples(logs[0].time, one, np.isfinite(one)) for one in value]
     rows: Sample = jax.tree.map(lambda *x: jnp.stack(x), *cells)
     return Seen(*(np.asarray(x) for x in _watch(monitors, rows)))
-
-
-def watch_ramps(monitors: Monitor, ramps: Ramps) -> Seen:
-    """The flight without a fault, and with each of the ramps."""
-    return watch(monitors, ramps.logs)
 
 
 @jax.jit
@@ -158,8 +163,3 @@ def _watch(monitors: Monitor, rows: Sample) -> tuple[Array, Array, Array]:
 
     told: tuple[Array, Array, Array] = jax.vmap(jax.vmap(one, (None, 0)), (0, None))(monitors, rows)
     return told
-
-
-def silent(k: int) -> Fixed:
-    """A limit that nothing passes."""
-    return Fixed(jnp.full(1, jnp.inf))

@@ -4,36 +4,38 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
-from sensorfault.studies.multistep.flights import FLIGHTS, flight
+from jaxtyping import Bool, Float
 
-from sensorfault.monitor.threshold.adaptive import Adaptive
-from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.studies.findings import Effort
-from sensorfault.studies.multistep.contenders import (
-    LOUD,
-    Contender,
-    kinematic,
-    network,
-    silent,
-    watch,
-    watch_ramps,
-)
-from sensorfault.studies.multistep.flown import SLOPES, Flown, Ramps, count
+from sensorfault.studies.multistep.contenders import Contender, Seen, kinematic, network, watch
+from sensorfault.studies.multistep.flights import FLIGHTS, flight
+from sensorfault.studies.multistep.flown import SLOPES, Count, Flown, Ramps, count
 from sensorfault.studies.numbers import Numbers
-from sensorfault.training.fixes import Fixes
-from sensorfault.training.roll_out import errors
 
 EXPERIMENT, DRIFT = "D", "drift"
 STEPS = tuple(range(1, 16))
 LONG = (*STEPS, 25)  # of the observers without a network
 QUICK_STEPS, QUICK_LONG, QUICK_SLOPES = (1, 10, 12), (1, 12, 25), (0.1, 0.5, 1.0)
-RATES = {"far1e-2": 0.01, "far2e-3": 0.002}  # of false alarms on the part that was learned from
+HARD, HARDER = "far1e-2", "far2e-3"
+RATES = {HARD: 0.01, HARDER: 0.002}  # of false alarms on the part that was learned from
 MATCHED, PRINTED, CLOSED, ADAPTIVE, WHOLE = "matched1e-2", "as-printed", "closed-loop", "adaptive", "whole-flight"
-SEEDS = 3
+HEADLINE = (PRINTED, HARD)  # conditions that are told of every number of steps
+TOLD = (1, 5, 10, 12, 15, 25)  # numbers of steps that the others are told of
 SWEPT = (1, 10, 12, 25)  # numbers of steps whose every slope is told
+SEEDS = 3
+LOUD = 1e9
 
 Alarms = Bool[np.ndarray, "K N T"]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Of one kind of observer under one condition: by number of steps, then slope; means over onsets and seeds."""
+
+    steps: tuple[int, ...]
+    slopes: tuple[float, ...]
+    rate: Float[np.ndarray, "n s"]
+    delay: Float[np.ndarray, "n s"]
 
 
 @dataclass
@@ -44,32 +46,31 @@ class Drift:
     real: Numbers
     injected: Numbers
     contenders: list[Contender] = field(default_factory=list)
-    shown: dict[str, Float[np.ndarray, " T"]] = field(default_factory=dict)  # residual and limit of figure 7
-    onset: int = 0
+    surfaces: dict[tuple[str, str], Surface] = field(default_factory=dict)  # by method and condition
+    printed: Seen | None = None  # the network under the threshold as printed
+    ramps: Ramps | None = None
 
 
 def drifts(effort: Effort) -> list[Drift]:
-    """Both flights."""
-    return [_flight(name, i / len(FLIGHTS), effort) for i, name in enumerate(FLIGHTS)]
+    """Both flights; one for a look."""
+    names = FLIGHTS[:1] if effort.quick else FLIGHTS
+    return [_flight(name, (i / len(names), 1 / len(names)), effort) for i, name in enumerate(names)]
 
 
-def _flight(name: str, share: float, effort: Effort) -> Drift:
-    def tell(doing: str, part: float) -> None:
-        effort.tell(f"{doing} on {name}", share + part / len(FLIGHTS))
-
+def _flight(name: str, share: tuple[float, float], effort: Effort) -> Drift:
+    begun, part = share
+    effort.tell(f"{name}: reading", begun)
     flown = Flown.of(flight(name))
-    told = Drift(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"))
     slopes = QUICK_SLOPES if effort.quick else SLOPES
     ramps = Ramps.on(flown.judge, slopes)
+    told = Drift(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"), ramps=ramps)
     kinds = _kinds(flown, effort)
     for i, (words, build) in enumerate(kinds.items()):
-        tell(f"{words}: fitting", i / len(kinds))
+        effort.tell(f"{name}: {words}, fitting", begun + part * i / len(kinds))
         contender = build()
         told.contenders.append(contender)
-        tell(f"{words}: judging", (i + 0.5) / len(kinds))
-        _judge(told, contender, ramps)
-        if not contender.trained:
-            _whole(told, contender, Ramps.on(flown.log, slopes))
+        effort.tell(f"{name}: {words}, judging", begun + part * (i + 0.5) / len(kinds))
+        _judge(told, contender, ramps, slopes)
     return told
 
 
@@ -77,56 +78,45 @@ def _kinds(flown: Flown, effort: Effort) -> Mapping[str, Callable[[], Contender]
     steps, long = (QUICK_STEPS, QUICK_LONG) if effort.quick else (STEPS, LONG)
     seeds = 1 if effort.quick else min(effort.seeds, SEEDS)
     kinds: dict[str, Callable[[], Contender]] = {
-        "kinematic observer": lambda: kinematic(flown, long),
-        "observer by barometer": lambda: kinematic(flown, long, "barometric"),
+        "kinematic": lambda: kinematic(flown, long),
         "network": lambda: network(flown, steps, seeds),
     }
     if not effort.quick:
-        kinds["network, weights of its own a step"] = lambda: network(flown, steps, 1, separate=True)
+        kinds["by barometer"] = lambda: kinematic(flown, long, "barometric")
+        kinds["weights of its own a step"] = lambda: network(flown, steps, 1, separate=True)
     return kinds
 
 
-def _judge(told: Drift, contender: Contender, ramps: Ramps) -> None:
-    """All limits; the part to judge. Open loop, as the paper, except where it says closed."""
-    flown = contender.flown
-    _errors(told.real, contender)
-    learned = watch(contender.monitors(silent), [flown.learn]).score[:, 0]
-    score = watch_ramps(contender.monitors(silent), ramps).score
+def _judge(told: Drift, contender: Contender, ramps: Ramps, slopes: tuple[float, ...]) -> None:
+    """All limits, set on the part that was learned from; open loop, as in the paper, except where it says closed."""
+    flown, many = contender.flown, len(contender.steps)
+    for n, rms in zip(contender.steps, contender.rms(flown.judge), strict=True):
+        told.real.add(_words(contender, "", n), contender.method, {"rms": rms})
+    loud = contender.monitors(np.full(many, LOUD))
+    plain = contender.trained is None and not contender.variant
+    flight = Ramps.on(flown.log, slopes) if plain else Ramps.on(flown.log, ())
+    whole = watch(loud, flight.logs)
+    learned = whole.score[:, 0, : flown.start]
+    seen = watch(loud, ramps.logs)
     for words, rate in RATES.items():
-        limit = np.nanquantile(learned, 1 - rate, axis=1)
-        _add(told, contender, words, ramps, score > limit[:, None, None])
-        if words == "far1e-2":
-            closed = contender.monitors(_fixed(limit), closed=True)
-            _add(told, contender, f"{words} {CLOSED}", ramps, watch_ramps(closed, ramps).alarm)
-    equal = np.nanquantile(score[:, 0], 1 - RATES["far1e-2"], axis=1)
-    _add(told, contender, MATCHED, ramps, score > equal[:, None, None])
-    ones = watch_ramps(contender.monitors(lambda k: contender.adaptive(1.0, 1.0, k)), ramps)
-    _add(told, contender, PRINTED, ramps, ones.alarm)
-    loud = watch(contender.monitors(lambda k: contender.adaptive(LOUD, LOUD, k)), [flown.learn])
-    factor = np.nanquantile(loud.score[:, 0] / loud.limit[:, 0] * LOUD, 0.99, axis=1)
-    scaled = watch_ramps(contender.monitors(_scaled(contender, factor)), ramps)
-    _add(told, contender, f"far1e-2 {ADAPTIVE}", ramps, scaled.alarm)
+        _add(told, contender, words, ramps, seen.score > _limit(learned, rate))
+    if plain:
+        _add(told, contender, f"{HARD} {WHOLE}", flight, whole.score > _limit(learned, RATES[HARD]))
+    _add(told, contender, MATCHED, ramps, seen.score > _limit(seen.score[:, 0], RATES[HARD]))
+    printed = watch(contender.monitors(np.ones(many)), ramps.logs)
+    _add(told, contender, PRINTED, ramps, printed.alarm)
+    factor = _limit(learned / whole.limit[:, 0, : flown.start] * LOUD, RATES[HARD])[:, 0, 0]
+    _add(told, contender, f"{HARD} {ADAPTIVE}", ramps, watch(contender.monitors(factor), ramps.logs).alarm)
+    if not contender.variant:
+        closed = watch(contender.monitors(factor, closed=True), ramps.logs)
+        _add(told, contender, f"{HARD} {ADAPTIVE} {CLOSED}", ramps, closed.alarm)
     if contender.trained and not contender.variant:
-        _show(told, contender, ramps, ones.score, ones.limit)
+        told.printed = printed
 
 
-def _fixed(limit: Float[np.ndarray, " K"]) -> Callable[[int], Fixed]:
-    import jax.numpy as jnp
-
-    return lambda k: Fixed(jnp.asarray(limit[k : k + 1]))
-
-
-def _scaled(contender: Contender, factor: Float[np.ndarray, " K"]) -> Callable[[int], Adaptive]:
-    return lambda k: contender.adaptive(float(factor[k]), float(factor[k]), k)
-
-
-def _errors(numbers: Numbers, contender: Contender) -> None:
-    """Root mean square of the roll-outs on the part to judge."""
-    for k, n in enumerate(contender.steps):
-        observer = contender.observers[k]
-        fixes = Fixes.of(contender.flown.judge, 0, observer.model.columns)
-        rms = float(np.sqrt(np.mean(errors(observer.model, fixes, (n,)) ** 2)))
-        numbers.add(_words(contender, "", n), contender.method, {"rms": rms})
+def _limit(scores: Float[np.ndarray, "K T"], rate: float) -> Float[np.ndarray, "K 1 1"]:
+    """What so large a share of healthy scores passes."""
+    return np.asarray(np.nanquantile(scores, 1 - rate, axis=1)[:, None, None])
 
 
 def _words(contender: Contender, condition: str, steps: int) -> str:
@@ -135,50 +125,35 @@ def _words(contender: Contender, condition: str, steps: int) -> str:
 
 def _add(told: Drift, contender: Contender, condition: str, ramps: Ramps, alarm: Alarms) -> None:
     """Rates and delays of each number of steps: the mean over all slopes, and each slope."""
-    faulty = np.flatnonzero(ramps.slope > 0)
+    headline = condition in HEADLINE
+    slopes = tuple(dict.fromkeys(ramps.slope[1:].tolist()))
+    counts: dict[int, list[list[Count]]] = {}
     for k, n in enumerate(contender.steps):
-        words = _words(contender, condition, n)
-        mine = alarm[k]
-        judged = mine[0, max(contender.steps) :]
+        words, judged = _words(contender, condition, n), alarm[k, 0, max(contender.steps) :]
+        each = [count(ramps, alarm[k], np.flatnonzero(ramps.slope == slope)) for slope in slopes]
+        counts.setdefault(n, []).append(each)
+        if not headline and n not in TOLD:
+            continue
+        chance = count(ramps, alarm[k], np.flatnonzero(ramps.slope > 0), fault=False)
         told.real.add(words, contender.method, {"far": float(judged.mean())})
-        _count(told.injected, words, contender.method, ramps, mine, faulty, None)
-        for slope in dict.fromkeys(ramps.slope[faulty].tolist()):
-            _count(told.injected, words, contender.method, ramps, mine, np.flatnonzero(ramps.slope == slope), slope)
+        _told(told.injected, words, contender.method, mean(each), chance, None)
+        if headline and n in SWEPT and not contender.variant:
+            for slope, one in zip(slopes, each, strict=True):
+                _told(told.injected, words, contender.method, one, chance, slope)
+    if not contender.variant:
+        rate, delay = (
+            np.array([[np.mean([seed[s][i] for seed in counts[n]]) for s in range(len(slopes))] for n in counts])
+            for i in range(2)
+        )
+        told.surfaces[contender.method, condition] = Surface(tuple(counts), slopes, rate, delay)
 
 
-def _count(
-    numbers: Numbers,
-    words: str,
-    method: str,
-    ramps: Ramps,
-    alarm: Bool[np.ndarray, "N T"],
-    cells: Int[np.ndarray, " n"],
-    slope: float | None,
-) -> None:
-    found, chance = count(ramps, alarm, cells), count(ramps, alarm, cells, fault=False)
+def mean(counts: list[Count]) -> Count:
+    """Of several slopes."""
+    return Count(*(float(np.mean(x)) for x in zip(*counts, strict=True)))
+
+
+def _told(numbers: Numbers, words: str, method: str, found: Count, chance: Count, slope: float | None) -> None:
     told = {"detection_rate": found.rate, "chance": chance.rate, "delay_steps": found.delay}
     told |= {"chance_delay_steps": chance.delay, "missed": found.missed}
     numbers.add(words, method, told, DRIFT, slope)
-
-
-def _whole(told: Drift, contender: Contender, ramps: Ramps) -> None:
-    """Over the whole flight, as the limits that nothing is learned for allow: what the prototypes did."""
-    learned = watch(contender.monitors(silent), [contender.flown.learn]).score[:, 0]
-    limit = np.nanquantile(learned, 0.99, axis=1)
-    score = watch_ramps(contender.monitors(silent), ramps).score
-    _add(told, contender, f"far1e-2 {WHOLE}", ramps, score > limit[:, None, None])
-
-
-def _show(
-    told: Drift,
-    contender: Contender,
-    ramps: Ramps,
-    score: Float[np.ndarray, "K N T"],
-    limit: Float[np.ndarray, "K N T"],
-) -> None:
-    """The paper's figure 7: the slowest ramp, N = 1 and N = 10, under the threshold as printed."""
-    (cell, *_) = np.flatnonzero(ramps.slope == SLOPES[0])
-    told.onset = int(ramps.onset[cell])
-    for n in (1, 10):
-        k, *_ = contender.of(n)
-        told.shown |= {f"residual N{n}": score[k, cell], f"limit N{n}": limit[k, cell]}

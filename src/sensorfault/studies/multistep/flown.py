@@ -1,6 +1,7 @@
 """A flight from fix to fix, cut into a part to learn from and one to judge, and the ramps laid on its height."""
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -86,8 +87,7 @@ class Ramps:
         return slice(int(self.onset[cell]), min(int(self.onset[cell]) + FAULTY, len(self.log)))
 
 
-@dataclass(frozen=True)
-class Count:
+class Count(NamedTuple):
     """What the alarms of one monitor say of all ramps of one slope, or of the same spans without any.
 
     `rate`: share of faulty steps that are flagged; `delay`: steps to the first alarm, all of them where there is none;
