@@ -279,8 +279,8 @@ def test_both_drifts_are_found_at_once_by_the_network(variant: str) -> None:
 
 @pytest.mark.real
 def test_isolation_on_the_real_arm(real_data: Path) -> None:
-    """Must: right in 95 % of shorts, of biases and of jams of five one-step errors, with one healthy sample in a hundred
-    with anybody over his limit.
+    """Must: right in 95 % of shorts, of biases and of jams of five one-step errors, with one healthy sample in a
+    hundred with anybody over his limit.
     """
     parts = Runs.of(runs(real_data / "arm" / "schunk_arm.tar.gz"), 0)
     network, *_ = of_six_joints(APART)
