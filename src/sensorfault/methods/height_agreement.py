@@ -1,0 +1,162 @@
+"""Do the heights agree: receiver, barometer and vertical speeds, each two of them against each other over a minute."""
+
+from itertools import combinations
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.recipe import Recipe
+from sensorfault.model import TOGETHER, Model, hold_s, owners
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.rebuild import Rebuild
+from sensorfault.monitor.residual.height_witnesses import PAST, RECENT, HeightWitnesses
+from sensorfault.monitor.statistic.agreement import Agreement
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.replay import replay_log
+from sensorfault.training.limits import tail_limit
+from sensorfault.training.session import Session
+from sensorfault.vehicles.fixed_wing import Roles, roles
+
+BEAT_S = 1.0
+GAP_S = 3.0  # or three periods of the receiver
+AFRESH_S = 300.0  # a longer disagreement is taken for a witness set anew
+REBUILD_S = 120.0  # a height is believed for so long on another's word
+READMIT_S = 2.0
+PER_HOUR = 1.0  # false alarms of all tests together
+BLOCK_S = 20.0
+MARGIN = 1.25  # on every limit, for what a flight of minutes has not shown
+LEAST_S = 120.0  # two minutes: the first of them only fills the memory
+
+
+def build(log: Log, seed: int, session: Session) -> Model:
+    """Fit on a healthy flight; there is no chance in it.
+
+    Raises:
+        LogError: fewer than two witnesses of the height, or too short a flight.
+    """
+    found = roles(log)
+    witnesses = _witnesses(log, found)
+    columns, pairs = tuple(witnesses), tuple(combinations(range(len(witnesses)), 2))
+    residual = HeightWitnesses(
+        upward=jnp.asarray(list(witnesses.values())),
+        beat_s=jnp.asarray(BEAT_S),
+        gap_s=jnp.asarray(max(GAP_S, 3 * _period_s(log, columns[0]))),
+        afresh_s=jnp.asarray(AFRESH_S),
+        variance=jnp.ones(len(log.channels)),
+        columns=columns,
+        pairs=pairs,
+        stands_in=_stands_in(columns, list(witnesses.values()), pairs),
+    )
+    every = Agreement(
+        jnp.ones((2, len(pairs))),
+        tuple((columns[i], columns[j]) for i, j in pairs),
+        owners(log.channels, log.sensors),
+    )
+    deaf = _monitor(log, residual, every, np.inf)
+    session.tell("measuring how far healthy heights move apart")
+    score = np.asarray(replay_log(deaf, log).scores[0])
+    if not np.isfinite(score).any():
+        raise LogError(
+            f"{log.name} shows {log.duration_s:.0f} s of heights that can be compared, {NAME} needs more than "
+            f"{LEAST_S:g} s without a gap; give a longer flight."
+        )
+    limit = MARGIN * np.nanmax(np.where(np.isfinite(score),score,0.), axis=0)
+    limit = np.where(np.isfinite(limit), limit, np.inf).reshape(every.limit.shape)
+    variance = _variance(log, residual, limit)
+    statistic = eqx.tree_at(lambda s: s.limit, every, jnp.asarray(limit))
+    residual = eqx.tree_at(lambda r: r.variance, residual, jnp.asarray(variance))
+    paths = [log.channels[c].path for c in columns]
+    names = [TOGETHER.join((paths[i], paths[j])) for i, j in pairs]
+    spans = [f"apart within {length * BEAT_S:g} s" for length in (RECENT, RECENT + PAST)]
+    watched = np.isin(np.arange(len(log.channels)), columns)
+    told = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "limits": {f"{n}, {s}": float(x) for s, row in zip(spans, limit, strict=True) for n, x in zip(names, row, strict=True)},
+        "smallest_drift": {n: float(x) / ((RECENT + PAST) * BEAT_S) for n, x in zip(names, limit[-1], strict=True)},
+        "not_watched": {c.path: "says nothing of the height" for c, w in zip(log.channels, watched, strict=True) if not w},
+    }
+    return Model(
+        NAME,
+        _monitor(log, residual, statistic, 1.0),
+        log.channels,
+        log.sensors,
+        tuple((span, name) for span in spans for name in names),
+        tuple(watched.tolist()),
+        log.period_s,
+        tuple(np.sqrt(variance).tolist()),
+        told,
+    )
+
+
+def _witnesses(log: Log, found: Roles) -> dict[int, float]:
+    """Columns and signs of what says something of the height, the receiver's (or whoever else's) height first.
+
+    Raises:
+        LogError: fewer than two.
+    """
+    heights = [(c, 0.0) for c in (found.height, found.barometric) if c is not None]
+    speeds = [(found.vertical, found.upward), (found.inertial, found.inertial_upward)]
+    witnesses = dict([*heights, *((c, sign) for c, sign in speeds if c is not None)])
+    if not heights or len(witnesses) < 2:
+        raise LogError(
+            f"{log.name} has {len(witnesses)} channels that tell its height (altitude [m], vertical speed [m/s]), "
+            f"{NAME} compares at least two, one of them an altitude; name the columns in vehicle.toml, or take another "
+            "method."
+        )
+    return witnesses
+
+
+def _stands_in(
+    columns: tuple[int, ...], upward: list[float], pairs: tuple[tuple[int, int], ...]
+) -> tuple[tuple[int, int, float], ...]:
+    """For each of two heights the other one."""
+    return tuple(
+        (w, p, 1.0 if i == w else -1.0)
+        for p, (i, j) in enumerate(pairs)
+        for w in (i, j)
+        if upward[i] == 0 and upward[j] == 0
+    )
+
+
+def _variance(log: Log, residual: HeightWitnesses, limit: Float[np.ndarray, "2 P"]) -> Float[np.ndarray, " C"]:
+    """Of a height on another's word: a limit is about three standard deviations. 1 where nothing stands in."""
+    variance = np.ones(len(log.channels))
+    for w, pair, _ in residual.stands_in:
+        if np.isfinite(limit[0, pair]):
+            variance[residual.columns[w]] = (limit[0, pair] / 3) ** 2
+    return variance
+
+
+def _monitor(log: Log, residual: HeightWitnesses, statistic: Agreement, limit: float) -> Monitor:
+    channels = len(log.channels)
+    horizon = np.zeros(channels)
+    horizon[[residual.columns[w] for w, _, _ in residual.stands_in]] = REBUILD_S
+    return Monitor(
+        residual=residual,
+        branches=(Branch(statistic, Fixed(jnp.full(statistic.limit.size, limit))),),
+        decision=Exceed(share=1.0),
+        recovery=Rebuild(jnp.asarray(horizon), jnp.asarray(READMIT_S), channels),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+        together=False,
+    )
+
+
+def _period_s(log: Log, column: int) -> float:
+    return next(s.period_s for s in log.sensors if s.name == log.channels[column].sensor)
+
+
+NAME = "height-agreement"
+RECIPE = Recipe(
+    name=NAME,
+    title="Receiver, barometer and vertical speeds against each other over a minute; who lies, if a third one knows",
+    source="mean pair against an independent reference, EXPERIMENTS multistep; isolation by who disagrees with whom",
+    promise=f"{PER_HOUR:g} false alarm an hour for all tests together, extrapolated from the tail of the healthy "
+    "flight, and a quarter on top of each limit",
+    build=build,
+)
