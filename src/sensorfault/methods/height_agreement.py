@@ -64,7 +64,7 @@ def build(log: Log, seed: int, session: Session) -> Model:
             f"{log.name} shows {log.duration_s:.0f} s of heights that can be compared, {NAME} needs more than "
             f"{LEAST_S:g} s without a gap; give a longer flight."
         )
-    limit = MARGIN * np.nanmax(np.where(np.isfinite(score),score,0.), axis=0)
+    limit = MARGIN * np.nanmax(np.where(np.isfinite(score), score, 0.0), axis=0)
     limit = np.where(np.isfinite(limit), limit, np.inf).reshape(every.limit.shape)
     variance = _variance(log, residual, limit)
     statistic = eqx.tree_at(lambda s: s.limit, every, jnp.asarray(limit))
@@ -76,9 +76,13 @@ def build(log: Log, seed: int, session: Session) -> Model:
     told = {
         "training_log": log.name,
         "training_s": log.duration_s,
-        "limits": {f"{n}, {s}": float(x) for s, row in zip(spans, limit, strict=True) for n, x in zip(names, row, strict=True)},
+        "limits": {
+            f"{n}, {s}": float(x) for s, row in zip(spans, limit, strict=True) for n, x in zip(names, row, strict=True)
+        },
         "smallest_drift": {n: float(x) / ((RECENT + PAST) * BEAT_S) for n, x in zip(names, limit[-1], strict=True)},
-        "not_watched": {c.path: "says nothing of the height" for c, w in zip(log.channels, watched, strict=True) if not w},
+        "not_watched": {
+            c.path: "says nothing of the height" for c, w in zip(log.channels, watched, strict=True) if not w
+        },
     }
     return Model(
         NAME,

@@ -33,7 +33,8 @@ from sensorfault.training.tapes import score_tape
 from sensorfault.vehicles.car import LEAST_SPEED, Roles, moving, roles
 from sensorfault.vehicles.inertial import Inertial
 
-HORIZONS_S = 0.25, 1.0  # a jump, and a way
+HORIZONS_S = 0.25, 1.0  # a jump, and a way; of a slow receiver a period of its fixes, and four
+JITTER = 0.9  # of a period there may be between two fixes
 SHORT_S = 0.3  # of the shortfall, at least: three fixes at 10 Hz
 HALF = 2.0  # ... and more than half of the way is missing
 FLOOR_M = 0.5  # less way missing is no jam worth an alarm
@@ -140,10 +141,12 @@ def _parts(
     assert found.position is not None
     assert found.velocity is not None
     channels = len(log.channels)
+    period_s = next(s.period_s for s in log.sensors if s.name == log.channels[found.position[0]].sensor)
+    horizons_s = [max(fast, JITTER * many * period_s) for fast, many in zip(HORIZONS_S, (1, 4), strict=True)]
     deficit = MotionDeficit(
-        law=jnp.ones((len(HORIZONS_S), 4)),
-        horizon_s=jnp.asarray(HORIZONS_S),
-        spacing_s=jnp.asarray(HORIZONS_S[-1] / (SLOTS - 2)),
+        law=jnp.ones((len(horizons_s), 4)),
+        horizon_s=jnp.asarray(horizons_s),
+        spacing_s=jnp.asarray(horizons_s[-1] / (SLOTS - 2)),
         afresh_s=jnp.asarray(AFRESH_S),
         inertial=unit,
         position=found.position,
@@ -153,10 +156,9 @@ def _parts(
         slots=SLOTS,
     )
     place = _mask(channels, *found.position)
-    period_s = next(s.period_s for s in log.sensors if s.name == log.channels[found.position[0]].sensor)
     short_s = jnp.asarray(max(SHORT_S, 2 * period_s))
     tests: list[Test] = [
-        (tuple(f"deficit over {horizon:g} s" for horizon in HORIZONS_S), Of(Deficit(place), 0), 0.0),
+        (tuple(f"deficit over {horizon:g} s" for horizon in horizons_s), Of(Deficit(place), 0), 0.0),
         (("shortfall",), Of(Shortfall(short_s, jnp.asarray(HALF), place, found.position), 0), FLOOR_M),
     ]
     if repeats:

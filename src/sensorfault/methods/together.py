@@ -1,6 +1,6 @@
 """Several fitted methods as one monitor, under one budget of false alarms."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,12 +26,21 @@ from sensorfault.training.tapes import deaf, score_tape
 MOST = 2  # sensors that one sample may exclude
 
 
-def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed: int, session: Session) -> Model:
+def together(
+    name: str,
+    log: Log,
+    parts: Sequence[Recipe],
+    per_hour: float,
+    seed: int,
+    session: Session,
+    kept: Collection[str] = (),
+) -> Model:
     """Every part that the log allows, each answering for the channels it watches, the first of several before others.
 
     Each part comes with limits that promise `per_hour` false alarms if it is alone. Here each of its tests has an equal
     share of that, so its limit is raised by what the share costs in the tail of its scores on this log. Tests of exact
-    repeats keep their own limits, which promise far less. What a part said why it cannot run is in `summary["cannot"]`.
+    repeats keep their own limits, which promise far less, and so do the parts whose names are in `kept`: of tests with a
+    memory of a minute a log of minutes shows no tail. What a part said why it cannot run is in `summary["cannot"]`.
 
     Raises:
         LogError: no part can be fitted on this log.
@@ -49,7 +58,7 @@ def together(name: str, log: Log, parts: Sequence[Recipe], per_hour: float, seed
     if not models:
         raise LogError(" ".join(cannot.values()))
     session.tell("sharing out the false alarms")
-    limits = _limits(models, log, per_hour)
+    limits = _limits(models, log, per_hour, kept)
     first = _answering(models)
     of = np.argmax(first, axis=0)  # the part that answers for each channel
     sigma = tuple(models[p].sigma[c] for c, p in enumerate(of))
@@ -107,17 +116,19 @@ def _joined(log: Log, models: Sequence[Model], limits: Sequence[Stage[Any, Any, 
     )
 
 
-def _limits(models: Sequence[Model], log: Log, per_hour: float) -> list[Stage[Any, Any, Any, Any]]:
-    """Each part's own limit, raised by what the smaller share costs; exact repeats keep theirs."""
+def _limits(
+    models: Sequence[Model], log: Log, per_hour: float, kept: Collection[str]
+) -> list[Stage[Any, Any, Any, Any]]:
+    """Each part's own limit, raised by what the smaller share costs, but for those that are kept."""
     owns = [branch.threshold for model in models for branch in model.monitor.branches]
-    certain = [branch.certain for model in models for branch in model.monitor.branches]
+    stands = [branch.certain or model.method in kept for model in models for branch in model.monitor.branches]
     limits: list[Stage[Any, Any, Any, Any]] = []
-    for own, sure, tape in zip(owns, certain, score_tape(deaf(_joined(log, models, owns)), log), strict=True):
-        share = per_hour / (tape.shape[1] * (len(certain) - sum(certain)))
+    for own, stays, tape in zip(owns, stands, score_tape(deaf(_joined(log, models, owns)), log), strict=True):
+        share = per_hour / (tape.shape[1] * (len(stands) - sum(stands)))
         alone, shared = (tail_limit(tape, log.period_s, rate) for rate in (per_hour, share))
         scaled = (alone > 0) & np.isfinite(shared)
         dearer = np.divide(shared, alone, out=np.ones_like(alone), where=scaled)
-        limits.append(own if sure else Fixed(jnp.asarray(_fixed(own) * dearer)))
+        limits.append(own if stays else Fixed(jnp.asarray(_fixed(own) * dearer)))
     return limits
 
 

@@ -204,9 +204,7 @@ class HeightWitnesses(eqx.Module):
         total = jnp.stack([(after.recent[:-NEWEST] * before).sum(axis=0), (after.past[:OLDEST] * minute).sum(axis=0)])
         enough = many >= jnp.asarray([[ENOUGH], [OLDEST // 2]])
         anew = enough & ~held[None]
-        return after._replace(
-            kept=jnp.where(anew, total / jnp.maximum(many, 1), state.kept), sure=state.sure | anew
-        )
+        return after._replace(kept=jnp.where(anew, total / jnp.maximum(many, 1), state.kept), sure=state.sure | anew)
 
     def _apart(self, state: _State) -> Apart:
         gaps, known = [], []
