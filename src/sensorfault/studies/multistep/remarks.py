@@ -1,0 +1,6 @@
+"""placeholder"""
+
+
+def remarks(told: object) -> tuple[str, ...]:
+    """None yet."""
+    return ()
