@@ -60,8 +60,10 @@ class Flown:
 
 @dataclass(frozen=True)
 class Ramps:
-    """Cell 0 has no fault; then every slope at every onset. `height`: of each cell [m]; `faulty`: steps of a
-    ramp."""
+    """Cell 0 has no fault; then every slope at every onset.
+
+    `height`: of each cell [m]; `slope` [m/s], `onset` [row] and `faulty` [rows]: of its ramp.
+    """
 
     log: Log
     height: Float[np.ndarray, "N T"]

@@ -26,12 +26,12 @@ def study(effort: Effort) -> Findings:
     """
     real("uav")
     told = drifts(effort)
-    rows = tuple(row for one in told for row in _rows(one))
+    rows = tuple(row for one in told for row in rows_of(one))
     figures = tuple(figure for one in told for figure in of_drift(one))
     return Findings(rows, figures, remarks(told))
 
 
-def _rows(told: Drift) -> Iterator[Row]:
+def rows_of(told: Drift) -> Iterator[Row]:
     """With the paper's numbers beside its own method under its own threshold."""
     yield from told.real.rows()
     for row in told.injected.rows():
