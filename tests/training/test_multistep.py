@@ -64,6 +64,19 @@ def test_it_ends_when_no_epoch_is_better() -> None:
             assert loss[k - 5 : k].min() < loss[: k - 5].min()
 
 
+def test_what_has_ended_stands_still() -> None:
+    """While others go on."""
+    plan = Schedule(epochs=200, rate=0.03, every=20, patience=5)
+    together = train_steps(fixes(), (1, 2), schedule=plan)
+    done = np.isfinite(together.loss[0]).sum(axis=1)
+    assert done[0] != done[1]
+    early = int(np.argmin(done))
+    stopped = train_steps(fixes(), (1, 2), schedule=replace(plan, epochs=int(done[early])))
+    one, two = together.nets[0][early], stopped.nets[0][early]
+    np.testing.assert_array_equal(one.weights, two.weights)
+    np.testing.assert_array_equal(one.offset, two.offset)
+
+
 def test_rates_drop_by_steps() -> None:
     """With a rate that drops to nothing, nothing moves any more."""
     told = train_steps(fixes(), (1,), schedule=Schedule(epochs=12, rate=1e-3, drop=0.0, every=4, batch=10_000))
