@@ -26,7 +26,8 @@ class Blocks(NamedTuple):
     @classmethod
     def empty(cls, slots: int, channels: int) -> "Blocks":
         """No value yet."""
-        return cls(*[jnp.zeros((slots, channels))] * 5, jnp.zeros(channels))
+        nothing = jnp.zeros((slots, channels))
+        return cls(nothing, nothing, nothing, nothing, nothing, jnp.zeros(channels))
 
     @property
     def newest(self) -> Float[Array, " C"]:
@@ -35,8 +36,7 @@ class Blocks(NamedTuple):
 
     def kept(self, still: Bool[Array, " C"]) -> "Blocks":
         """The same window, or none, channel by channel."""
-        rows = [jnp.where(still[None], x, 0.0) for x in self[:-1]]
-        return Blocks(*rows, jnp.where(still, self.start, 0.0))
+        return Blocks(*(jnp.where(still if x.ndim == 1 else still[None], x, 0.0) for x in self))
 
     def put(
         self,
@@ -60,19 +60,20 @@ class Blocks(NamedTuple):
             q + weight * value**2,
         )
         after = [jnp.concatenate([x[:-1], jnp.where(new, j, x[-1])[None]]) for x, j in zip(rows, joined, strict=True)]
-        return Blocks(*after, jnp.where(new & begins, time, self.start))
+        after.append(jnp.where(new & begins, time, self.start))
+        return Blocks(*(x for x in after))
 
 
 class Window(NamedTuple):
     """What a test sees of the last `length` seconds: slots with weights (0: empty or too old) and ages.
 
-    `age` counts from the newest slot [s]. `count`: of the values. `square`: Σ weight value², over the window.
+    `age` counts from the newest slot [s]. `many`: the values. `square`: Σ weight value², over the window.
     """
 
     age: Float[Array, "K C"]
     value: Float[Array, "K C"]
     weight: Float[Array, "K C"]
-    count: Float[Array, " C"]
+    many: Float[Array, " C"]
     square: Float[Array, " C"]
     length: Float[Array, ""]
 
@@ -85,7 +86,7 @@ def window(blocks: Blocks, length: Float[Array, ""]) -> Window:
         age=jnp.where(there, age, 0.0),
         value=jnp.where(there, blocks.value, 0.0),
         weight=jnp.where(there, blocks.weight, 0.0),
-        count=jnp.where(there, blocks.n, 0.0).sum(axis=0),
+        many=jnp.where(there, blocks.n, 0.0).sum(axis=0),
         square=jnp.where(there, blocks.square, 0.0).sum(axis=0),
         length=length,
     )

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.types import NEVER, Residual, Sample, Trust
@@ -14,11 +13,15 @@ EARLY = 0.1  # share of a beat by which a fix may come early and still close it:
 
 
 class Beat(NamedTuple):
-    """Measured minus reference at this beat, its lag left in; how fast the reference moves; `closed`: a beat is over."""
+    """Measured minus reference, its lag left in; how fast the reference moves; `closed`: a beat is over.
+
+    `time`: the mean time of what was measured [s].
+    """
 
     difference: Float[Array, ""]  # [SI]
     speed: Float[Array, ""]  # [SI/s]
     closed: Bool[Array, ""]
+    time: Float[Array, ""]
 
 
 class _Mean(NamedTuple):
@@ -39,9 +42,6 @@ class _Mean(NamedTuple):
         """Mean value and mean time."""
         n = jnp.maximum(self.n, 1.0)
         return self.value / n, self.time / n
-
-
-_NONE = _Mean(*[np.zeros(())] * 3)
 
 
 class _State(NamedTuple):
@@ -114,11 +114,15 @@ class Difference(eqx.Module):
         said, at = jnp.where(there, r, state.last), jnp.where(there, t_r, state.at)
         expected = said + speed * (now - at + self.lag_s) + level
         valid = ready & (state.beats >= self.warm)
-        over = _State(now, _NONE, _NONE, said, at, speed, state.offset, state.beats, state.learned)
+        nothing = jnp.zeros(())
+        none = _Mean(nothing, nothing, nothing)
+        over = _State(now, none, none, said, at, speed, state.offset, state.beats, state.learned)
         going = state._replace(measured=height, reference=other)
         carried = jax.tree.map(lambda a, b: jnp.where(closed, a, b), over, going)
         work = _Work(carried, now, difference - speed * self.lag_s, ready)
-        return self._residual(sample, e, expected, valid, before, Beat(difference, speed, ready)), work
+        return self._residual(
+            sample, e, expected, valid, before, Beat(difference, speed, ready, state.start + t_h)
+        ), work
 
     def update(self, work: _Work, trust: Trust) -> _State:
         state = work.state

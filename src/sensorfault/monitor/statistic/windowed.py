@@ -26,10 +26,10 @@ class _Past(NamedTuple):
 class Windowed(eqx.Module):
     """`measure` of each channel's valid residuals over `window_s`; it accuses that channel alone.
 
-    The window holds `slots` blocks, so a sample costs a look at the blocks, however fast the channel; one about
-    1.2 `window_s` over their number apart has a block of its own for each value. It is evidence: it takes every valid sample, trusted or
-    not, and is judged once it is full. A channel that was not valid for longer than `gap_s`, or now carries another
-    source, fills its window anew. Weights are 1 / S, S the channel's variance in `residual.cov`.
+    The window holds `slots` blocks, so a sample costs a look at the blocks, however fast the channel; values further
+    apart than about 1.2 `window_s` over their number have a block each. It is evidence: it takes every valid sample,
+    trusted or not, and is judged once it is full. A channel that was not valid for longer than `gap_s`, or now carries
+    another source, fills its window anew. Weights are 1 / S, S the channel's variance in `residual.cov`.
     """
 
     measure: Measure

@@ -14,5 +14,5 @@ class WindowedChiSquare(eqx.Module):
     """
 
     def __call__(self, seen: Window) -> Float[Array, " C"]:
-        n = jnp.maximum(seen.count, 1.0)
+        n = jnp.maximum(seen.many, 1.0)
         return jnp.maximum(jnp.sqrt(2 * seen.square) - jnp.sqrt(2 * n - 1), 0.0)
