@@ -7,6 +7,7 @@ from sensorfault.methods import (
     bicycle_kalman,
     bp_autoencoder,
     car,
+    cusum,
     elm_autoencoder,
     elm_cross_validated,
     elm_robust,
@@ -15,14 +16,17 @@ from sensorfault.methods import (
     linear_extrapolation,
     lstm_displacement,
     lstm_predictor,
+    mean_pair,
     mlp_predictor,
     motion_deficit,
     multistep_observer,
     online_network,
     pca,
     persistence,
+    ramp_glr,
     relative_conditioning,
     side_force,
+    slope,
 )
 from sensorfault.methods.recipe import Recipe
 
@@ -48,6 +52,10 @@ _RECIPES = (
     arm_kalman.RECIPE,
     multistep_observer.RECIPE,
     kinematic_observer.RECIPE,
+    cusum.RECIPE,
+    ramp_glr.RECIPE,
+    slope.RECIPE,
+    mean_pair.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

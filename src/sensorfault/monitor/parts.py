@@ -10,6 +10,7 @@ from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.arm_kalman import ArmKalman
 from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.monitor.residual.difference import Difference
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.height_kalman import HeightKalman
@@ -22,20 +23,28 @@ from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.residual.side_force import SideForce
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
 from sensorfault.monitor.statistic.absolute import Absolute
+from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
+from sensorfault.monitor.statistic.cusum import Cusum
 from sensorfault.monitor.statistic.deficit import Deficit
+from sensorfault.monitor.statistic.ewma import Ewma
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
+from sensorfault.monitor.statistic.mean_pair import MeanPair
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.statistic.normality import Normality
 from sensorfault.monitor.statistic.of import Of
+from sensorfault.monitor.statistic.ramp_glr import RampGlr
 from sensorfault.monitor.statistic.relative import Relative
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.monitor.statistic.shortfall import Shortfall
 from sensorfault.monitor.statistic.slippage import Slippage
+from sensorfault.monitor.statistic.slope import Slope
 from sensorfault.monitor.statistic.standing import Standing
 from sensorfault.monitor.statistic.whitened import Whitened
+from sensorfault.monitor.statistic.windowed import Windowed
+from sensorfault.monitor.statistic.windowed_chi_square import WindowedChiSquare
 from sensorfault.monitor.threshold.adaptive import Adaptive
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
@@ -59,6 +68,8 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(BicycleKalman, Columns, Whitened, Normality),
         *(ArmKalman, TwoLink),
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
+        *(Difference, Windowed, Slope, MeanPair, RampGlr),
+        *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
         *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),
         *(Drop, Rebuild),

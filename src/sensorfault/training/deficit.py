@@ -3,24 +3,16 @@
 import sensorfault._jax  # isort: skip  # noqa: F401
 
 from itertools import combinations
-from typing import Any
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import Log
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor, MonitorState
-from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
-from sensorfault.monitor.statistic.norm import Norm
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import replay, samples
-from sensorfault.types import Sample
+from sensorfault.training.tapes import extra_tape
 
 TIMES = (1.0, 2.0, 4.0, 8.0)  # ages of references over which a law is learned, in horizons
 SLOTS = 32  # of the trail while learning
@@ -42,25 +34,11 @@ def fit_deficit(part: MotionDeficit, log: Log) -> MotionDeficit:
 
 def fit_velocity(part: VelocityDeficit, log: Log) -> VelocityDeficit:
     """With the mean square of the slip on a healthy drive."""
-    told = _extras(part, log)
+    told = extra_tape(part, log)
     slip = told.slip[told.ready]
     variance = (slip**2).mean(axis=0) if len(slip) else np.ones(2)
     fitted: VelocityDeficit = eqx.tree_at(lambda p: p.variance, part, jnp.asarray(np.maximum(variance, FINEST_M_S**2)))
     return fitted
-
-
-def _extras(residual: Any, log: Log) -> Any:
-    """`extra` of a residual generator's every sample on a healthy log, all of it trusted."""
-    channels = len(log.channels)
-    silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
-    monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
-    rows = samples(log.time, log.value, log.fresh)
-    return jax.tree.map(np.asarray, _told(monitor, monitor.init(), rows))
-
-
-@jax.jit
-def _told(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
-    return replay(monitor, state, rows, lambda report: report.residual.extra)[1]
 
 
 def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[np.ndarray, "4"]:
@@ -76,7 +54,7 @@ def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[
         channels=part.channels,
         slots=SLOTS,
     )
-    told = _extras(wide, log)
+    told = extra_tape(wide, log)
     ready = told.ready
     if not ready.any():
         return np.array([FINEST_M**2, 0.0, 0.0, 0.0])

@@ -1,5 +1,7 @@
 """Tapes: what healthy data make of a monitor whose limits are off."""
 
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -7,10 +9,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from sensorfault.logs.table import Log
-from sensorfault.monitor.monitor import Monitor
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor, MonitorState
+from sensorfault.monitor.recovery.drop import Drop
+from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.replay import replay_log
-from sensorfault.types import Sample
+from sensorfault.run import replay, samples
+from sensorfault.stage import Stage
+from sensorfault.types import Residual, Sample
 
 
 def deaf(monitor: Monitor) -> Monitor:
@@ -31,3 +38,17 @@ def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
 def score_tape(deaf: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
     """The scores of every branch over a log, NaN where a test had nothing to test."""
     return tuple(np.asarray(score) for score in replay_log(deaf, log).scores)
+
+
+def extra_tape(residual: Stage[Any, Sample, Residual, Any], log: Log) -> Any:
+    """`extra` of a residual generator's every sample on a healthy log, all of it trusted."""
+    channels = len(log.channels)
+    silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
+    monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
+    rows = samples(log.time, log.value, log.fresh)
+    return jax.tree.map(np.asarray, _told(monitor, monitor.init(), rows))
+
+
+@jax.jit
+def _told(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
+    return replay(monitor, state, rows, lambda report: report.residual.extra)[1]

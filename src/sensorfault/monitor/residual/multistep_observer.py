@@ -30,7 +30,8 @@ class _Work(NamedTuple):
     sample: Sample
     inputs: Float[Array, " U"]
     known: Bool[Array, ""]  # all inputs
-    origin: Float[Array, ""]  # as above, of the height expected now
+    foretold: Bool[Array, ""]  # whether there is a height to expect now
+    origin: Float[Array, ""]  # as above, of that height
 
 
 class MultistepObserver(eqx.Module):
@@ -89,15 +90,15 @@ class MultistepObserver(eqx.Module):
             born=sample.born,
             extra=bank,
         )
-        return residual, _Work(state, sample, inputs, known, origin)
+        return residual, _Work(state, sample, inputs, known, ready[-1], origin)
 
     def update(self, pending: _Work, trust: Trust) -> _State:
-        state, sample, inputs, known, origin = pending
+        state, sample, inputs, known, foretold, origin = pending
         c = self.column
         fix, measured = sample.fresh[c], trust.measured[c]
         new = _of(sample.fresh, self.model.columns)
         taken = _of(trust.measured | trust.filled, self.model.columns)
-        whole = (measured | trust.filled[c]) & known & (taken | ~new).all()
+        whole = (measured | (trust.filled[c] & foretold)) & known & (taken | ~new).all()
         inputs = jnp.where(_of(trust.filled, self.model.columns), _of(trust.value, self.model.columns), inputs)
         after = _State(
             height=_shifted(state.height, trust.value[c]),

@@ -1,0 +1,24 @@
+"""A slow drift of a height, by the cumulative sum of its difference to the barometer."""
+
+import jax.numpy as jnp
+
+from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.monitor.statistic.cusum import Cusum
+
+NAME = "cusum"
+ALLOWANCE = 0.5  # an offset of one standard deviation is to be found
+SETTING = Setting(memory_s=120.0)
+
+
+def statistic(setting: Setting, channels: int) -> Statistic:
+    """The test of every channel."""
+    return Cusum(jnp.full(channels, ALLOWANCE), jnp.full(channels, jnp.inf), setting.gap_s)
+
+
+RECIPE = recipe(
+    NAME,
+    "Cumulative sum of receiver minus barometer, whose offset follows over two minutes",
+    "Page 1954; for the faults of Wang S. et al.",
+    statistic,
+    SETTING,
+)

@@ -1,0 +1,19 @@
+"""A slow drift of a height, by the likelihood ratio of a ramp in its difference to the barometer."""
+
+from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.monitor.statistic.ramp_glr import RampGlr
+
+NAME = "ramp-glr"
+
+
+def statistic(setting: Setting, channels: int) -> Statistic:
+    """The test of every channel."""
+    return setting.windowed(RampGlr(), channels)
+
+
+RECIPE = recipe(
+    NAME,
+    "Largest likelihood ratio of a ramp in receiver minus barometer, over all onsets in 130 s",
+    "Willsky & Jones 1976; for the faults of Wang S. et al.",
+    statistic,
+)

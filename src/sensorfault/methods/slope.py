@@ -1,0 +1,19 @@
+"""A slow drift of a height, by the slope of its difference to the barometer over two minutes."""
+
+from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.monitor.statistic.slope import Slope
+
+NAME = "slope"
+
+
+def statistic(setting: Setting, channels: int) -> Statistic:
+    """The test of every channel."""
+    return setting.windowed(Slope(), channels)
+
+
+RECIPE = recipe(
+    NAME,
+    "Slope of receiver minus barometer over 130 s",
+    "EXPERIMENTS, slow drift; for the faults of Wang S. et al.",
+    statistic,
+)
