@@ -8,9 +8,11 @@ from sensorfault.methods import (
     bp_autoencoder,
     car,
     cusum,
+    drone,
     elm_autoencoder,
     elm_cross_validated,
     elm_robust,
+    height_agreement,
     kinematic_observer,
     linear_conditioning,
     linear_extrapolation,
@@ -56,6 +58,8 @@ _RECIPES = (
     ramp_glr.RECIPE,
     slope.RECIPE,
     mean_pair.RECIPE,
+    height_agreement.RECIPE,
+    drone.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

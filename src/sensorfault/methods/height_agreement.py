@@ -1,4 +1,4 @@
-"""Do the heights agree: receiver, barometer and vertical speeds, each two of them against each other over a minute."""
+"""Do the heights agree: receiver, barometer and vertical speeds, each two against each other over a minute."""
 
 from itertools import combinations
 
@@ -13,11 +13,11 @@ from sensorfault.model import TOGETHER, Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
-from sensorfault.monitor.residual.height_witnesses import PAST, RECENT, HeightWitnesses
+from sensorfault.monitor.residual.height_witnesses import HeightWitnesses
 from sensorfault.monitor.statistic.agreement import Agreement
 from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.numerics.apart import PAST, RECENT
 from sensorfault.replay import replay_log
-from sensorfault.training.limits import tail_limit
 from sensorfault.training.session import Session
 from sensorfault.vehicles.fixed_wing import Roles, roles
 
@@ -26,10 +26,9 @@ GAP_S = 3.0  # or three periods of the receiver
 AFRESH_S = 300.0  # a longer disagreement is taken for a witness set anew
 REBUILD_S = 120.0  # a height is believed for so long on another's word
 READMIT_S = 2.0
-PER_HOUR = 1.0  # false alarms of all tests together
-BLOCK_S = 20.0
 MARGIN = 1.25  # on every limit, for what a flight of minutes has not shown
-LEAST_S = 120.0  # two minutes: the first of them only fills the memory
+FINEST_M = 0.1  # no two heights agree better
+LEAST_S = 120.0  # a minute only fills the memory
 
 
 def build(log: Log, seed: int, session: Session) -> Model:
@@ -51,50 +50,49 @@ def build(log: Log, seed: int, session: Session) -> Model:
         pairs=pairs,
         stands_in=_stands_in(columns, list(witnesses.values()), pairs),
     )
-    every = Agreement(
-        jnp.ones((2, len(pairs))),
-        tuple((columns[i], columns[j]) for i, j in pairs),
-        owners(log.channels, log.sensors),
-    )
-    deaf = _monitor(log, residual, every, np.inf)
     session.tell("measuring how far healthy heights move apart")
-    score = np.asarray(replay_log(deaf, log).scores[0])
-    if not np.isfinite(score).any():
-        raise LogError(
-            f"{log.name} shows {log.duration_s:.0f} s of heights that can be compared, {NAME} needs more than "
-            f"{LEAST_S:g} s without a gap; give a longer flight."
-        )
-    limit = MARGIN * np.nanmax(np.where(np.isfinite(score), score, 0.0), axis=0)
-    limit = np.where(np.isfinite(limit), limit, np.inf).reshape(every.limit.shape)
+    limit = _limit(log, residual)
     variance = _variance(log, residual, limit)
-    statistic = eqx.tree_at(lambda s: s.limit, every, jnp.asarray(limit))
     residual = eqx.tree_at(lambda r: r.variance, residual, jnp.asarray(variance))
     paths = [log.channels[c].path for c in columns]
     names = [TOGETHER.join((paths[i], paths[j])) for i, j in pairs]
     spans = [f"apart within {length * BEAT_S:g} s" for length in (RECENT, RECENT + PAST)]
-    watched = np.isin(np.arange(len(log.channels)), columns)
     told = {
         "training_log": log.name,
         "training_s": log.duration_s,
-        "limits": {
-            f"{n}, {s}": float(x) for s, row in zip(spans, limit, strict=True) for n, x in zip(names, row, strict=True)
-        },
-        "smallest_drift": {n: float(x) / ((RECENT + PAST) * BEAT_S) for n, x in zip(names, limit[-1], strict=True)},
-        "not_watched": {
-            c.path: "says nothing of the height" for c, w in zip(log.channels, watched, strict=True) if not w
-        },
+        "limits": {s: dict(zip(names, row.tolist(), strict=True)) for s, row in zip(spans, limit, strict=True)},
+        "smallest_drift": dict(zip(names, (limit[-1] / ((RECENT + PAST) * BEAT_S)).tolist(), strict=True)),
+        "not_watched": {c.path: "not of the height" for c in log.channels if c.path not in paths},
     }
     return Model(
-        NAME,
-        _monitor(log, residual, statistic, 1.0),
-        log.channels,
-        log.sensors,
-        tuple((span, name) for span in spans for name in names),
-        tuple(watched.tolist()),
-        log.period_s,
-        tuple(np.sqrt(variance).tolist()),
-        told,
+        method=NAME,
+        monitor=_monitor(log, residual, limit, 1.0),
+        channels=log.channels,
+        sensors=log.sensors,
+        tests=tuple((span, name) for span in spans for name in names),
+        watched=tuple(np.isin(np.arange(len(log.channels)), columns).tolist()),
+        tick_s=log.period_s,
+        sigma=tuple(np.sqrt(variance).tolist()),
+        summary=told,
     )
+
+
+def _limit(log: Log, residual: HeightWitnesses) -> Float[np.ndarray, "2 P"]:
+    """A margin above the farthest that each pair was apart; +inf for one that could never be compared.
+
+    Raises:
+        LogError: none could.
+    """
+    shape = 2, len(residual.pairs)
+    score = np.asarray(replay_log(_monitor(log, residual, np.ones(shape), np.inf), log).scores[0])
+    tested = np.isfinite(score)
+    if not tested.any():
+        raise LogError(
+            f"{log.name} shows {log.duration_s:.0f} s of heights that can be compared, {NAME} needs more than "
+            f"{LEAST_S:g} s without a gap; give a longer flight."
+        )
+    largest = np.maximum(np.where(tested, score, 0.0).max(axis=0), FINEST_M)
+    return np.where(tested.any(axis=0), MARGIN * largest, np.inf).reshape(shape)
 
 
 def _witnesses(log: Log, found: Roles) -> dict[int, float]:
@@ -136,17 +134,21 @@ def _variance(log: Log, residual: HeightWitnesses, limit: Float[np.ndarray, "2 P
     return variance
 
 
-def _monitor(log: Log, residual: HeightWitnesses, statistic: Agreement, limit: float) -> Monitor:
+def _monitor(log: Log, residual: HeightWitnesses, limit: Float[np.ndarray, "2 P"], most: float) -> Monitor:
+    """Alarm where a pair is `most` limits apart."""
     channels = len(log.channels)
     horizon = np.zeros(channels)
     horizon[[residual.columns[w] for w, _, _ in residual.stands_in]] = REBUILD_S
+    owner = owners(log.channels, log.sensors)
+    pairs = tuple((residual.columns[i], residual.columns[j]) for i, j in residual.pairs)
+    agreement = Agreement(jnp.asarray(limit), pairs, owner)
     return Monitor(
         residual=residual,
-        branches=(Branch(statistic, Fixed(jnp.full(statistic.limit.size, limit))),),
+        branches=(Branch(agreement, Fixed(jnp.full(limit.size, most))),),
         decision=Exceed(share=1.0),
         recovery=Rebuild(jnp.asarray(horizon), jnp.asarray(READMIT_S), channels),
         hold_s=jnp.asarray(hold_s(log)),
-        owner=owners(log.channels, log.sensors),
+        owner=owner,
         together=False,
     )
 
@@ -160,7 +162,7 @@ RECIPE = Recipe(
     name=NAME,
     title="Receiver, barometer and vertical speeds against each other over a minute; who lies, if a third one knows",
     source="mean pair against an independent reference, EXPERIMENTS multistep; isolation by who disagrees with whom",
-    promise=f"{PER_HOUR:g} false alarm an hour for all tests together, extrapolated from the tail of the healthy "
-    "flight, and a quarter on top of each limit",
+    promise="none; limits are a quarter above the largest of the healthy flight: of tests with a memory of a minute a "
+    "flight of minutes shows no rate",
     build=build,
 )

@@ -39,8 +39,9 @@ def together(
 
     Each part comes with limits that promise `per_hour` false alarms if it is alone. Here each of its tests has an equal
     share of that, so its limit is raised by what the share costs in the tail of its scores on this log. Tests of exact
-    repeats keep their own limits, which promise far less, and so do the parts whose names are in `kept`: of tests with a
-    memory of a minute a log of minutes shows no tail. What a part said why it cannot run is in `summary["cannot"]`.
+    repeats keep their own limits, which promise far less, and so do the parts whose names are in `kept`: a log of
+    minutes shows no tail of what has a memory of a minute. What a part said why it cannot run is in
+    `summary["cannot"]`.
 
     Raises:
         LogError: no part can be fitted on this log.

@@ -14,6 +14,7 @@ from sensorfault.monitor.residual.difference import Difference
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.height_kalman import HeightKalman
+from sensorfault.monitor.residual.height_witnesses import HeightWitnesses
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.multistep_observer import MultistepObserver
 from sensorfault.monitor.residual.online_network import OnlineNetwork
@@ -23,6 +24,7 @@ from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.residual.side_force import SideForce
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
 from sensorfault.monitor.statistic.absolute import Absolute
+from sensorfault.monitor.statistic.agreement import Agreement
 from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
 from sensorfault.monitor.statistic.cusum import Cusum
 from sensorfault.monitor.statistic.deficit import Deficit
@@ -69,6 +71,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(ArmKalman, TwoLink),
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
+        *(HeightWitnesses, Agreement),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
         *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),

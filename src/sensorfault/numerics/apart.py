@@ -1,0 +1,104 @@
+"""Pairs that should agree: what their differences were some seconds and a minute ago, beat by beat."""
+
+import sensorfault._jax  # isort: skip  # noqa: F401
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int
+
+RECENT, PAST, OLDEST = 10, 50, 10  # beats: the newest, those remembered before, and of these the reference's
+NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be believed
+LEAST_S = 1e-6  # of a doubt that has just begun
+
+
+class Memory(NamedTuple):
+    """Of P pairs: the beat that is going on, the means of those before, and the references in use.
+
+    `kept` and `sure`: the mean difference some seconds ago, and a minute ago, and whether it is known. While a pair is
+    doubted both stay as they are, and take the place of what would be remembered.
+    """
+
+    began: Float[Array, ""]  # this beat [s]
+    total: Float[Array, " P"]  # of the differences in this beat [m]
+    many: Float[Array, " P"]
+    recent: Float[Array, "R P"]  # the newest beats' means, the newest last [m]
+    lived: Int[Array, "R P"]  # 1 where there was one
+    clean: Int[Array, "R P"]  # 1 where it was believed
+    past: Float[Array, "Q P"]  # what was believed before them [m]
+    trusted: Int[Array, "Q P"]
+    kept: Float[Array, "2 P"]  # [m]
+    sure: Bool[Array, "2 P"]
+    doubted: Float[Array, " P"]  # for how long [s]
+
+    @classmethod
+    def empty(cls, pairs: int, began: Float[Array, ""]) -> "Memory":
+        """Nothing is known yet."""
+        none, recent, past = jnp.zeros(pairs), jnp.zeros((RECENT, pairs)), jnp.zeros((PAST, pairs))
+        flags, two = recent.astype(int), jnp.zeros((2, pairs))
+        return cls(began, none, none, recent, flags, flags, past, past.astype(int), two, two > 0, none)
+
+    def heard(self, both: Bool[Array, " P"], difference: Float[Array, " P"]) -> "Memory":
+        """With these differences in the beat."""
+        return self._replace(
+            total=jnp.where(both, self.total + difference, self.total), many=jnp.where(both, self.many + 1, self.many)
+        )
+
+    def beaten(self, over: Bool[Array, ""], now: Float[Array, ""]) -> "Memory":
+        """If the beat is over: with it in its place, and the next one begun."""
+        return Memory(*[jnp.where(over, a, b) for a, b in zip(self._next(now), self, strict=True)])
+
+    def _next(self, now: Float[Array, ""]) -> "Memory":
+        lives, held = (self.many > 0).astype(int), self.doubted > 0
+        # what leaves the newest beats without having been believed is remembered as its reference
+        believed = self.clean[0] > 0
+        after = self._replace(
+            began=now,
+            total=jnp.zeros_like(self.total),
+            many=jnp.zeros_like(self.many),
+            recent=_shifted(self.recent, self.total / jnp.maximum(self.many, 1)),
+            lived=_shifted(self.lived, lives),
+            clean=_shifted(self.clean, jnp.where(held, 0, lives)),
+            past=_shifted(self.past, jnp.where(believed, self.recent[0], self.kept[1])),
+            trusted=_shifted(self.trusted, jnp.where(believed, 1, (held & self.sure[1]).astype(int))),
+            doubted=jnp.where(held, self.doubted + (now - self.began), 0.0),
+        )
+        before, oldest = after.clean[:-NEWEST], after.trusted[:OLDEST]
+        many = jnp.stack([before.sum(axis=0), oldest.sum(axis=0)])
+        total = jnp.stack([(after.recent[:-NEWEST] * before).sum(axis=0), (after.past[:OLDEST] * oldest).sum(axis=0)])
+        anew = (many >= jnp.asarray([[ENOUGH], [OLDEST // 2]])) & ~held[None]
+        kept = jnp.where(anew, total / jnp.maximum(many, 1), self.kept)
+        return after._replace(kept=kept, sure=self.sure | anew)
+
+    def gaps(self) -> tuple[Float[Array, "2 P"], Bool[Array, "2 P"]]:
+        """How far the newest two beats are from the beats before them, and the newest ten from those of a minute ago
+        [m]; and whether that is known.
+        """
+        gaps, known = [], []
+        for length, kept, sure in zip((NEWEST, RECENT), self.kept, self.sure, strict=True):
+            lived = self.lived[-length:]
+            many = lived.sum(axis=0)
+            gaps.append((self.recent[-length:] * lived).sum(axis=0) / jnp.maximum(many, 1) - kept)
+            known.append(sure & (many >= (length + 1) // 2))
+        return jnp.stack(gaps), jnp.stack(known)
+
+    def doubting(self, begins: Bool[Array, " P"], ends: Bool[Array, " P"]) -> "Memory":
+        """With doubts that begin, go on or end."""
+        begun = jnp.maximum(self.doubted, LEAST_S)
+        return self._replace(doubted=jnp.where(begins, begun, jnp.where(ends, 0.0, self.doubted)))
+
+    def forgotten(self, pairs: Bool[Array, " P"]) -> "Memory":
+        """Nothing remembered of these pairs."""
+        return self._replace(
+            total=jnp.where(pairs, 0.0, self.total),
+            many=jnp.where(pairs, 0.0, self.many),
+            lived=jnp.where(pairs, 0, self.lived),
+            clean=jnp.where(pairs, 0, self.clean),
+            trusted=jnp.where(pairs, 0, self.trusted),
+            sure=self.sure & ~pairs,
+            doubted=jnp.where(pairs, 0.0, self.doubted),
+        )
+
+
+def _shifted(ring: Array, new: Array) -> Array:
+    return jnp.concatenate([ring[1:], new[None]])
