@@ -31,11 +31,12 @@ def flight(duration_s: float = 240.0, seed: int = 0, hz: float = 5.0) -> Log:
     height = 300.0 + np.concatenate([[0.0], np.cumsum((climb[1:] + climb[:-1]) / 2 / hz)])
     truth = np.column_stack([height, -climb, height - 70.0, pitch, throttle])
     value = truth + random.uniform(-1, 1, truth.shape) * [0.08, 0.05, 0.2, 2e-3, 1e-3]
-    every = round(FIX_S * hz)
+    every = max(round(FIX_S * hz), 1)
     fresh = np.ones(value.shape, bool)
     fresh[:, :2] = (np.arange(len(time)) % every == 0)[:, None]
     value[:, :2] = np.where(fresh[:, :2], value[:, :2], np.nan)
     sensors = tuple(
-        Sensor(name, FIX_S if name == "gnss" else 1 / hz) for name in ("gnss", "barometer", "attitude", "control")
+        Sensor(name, max(FIX_S, 1 / hz) if name == "gnss" else 1 / hz)
+        for name in ("gnss", "barometer", "attitude", "control")
     )
     return Log(time, value, fresh, CHANNELS, sensors, f"flight {seed}")

@@ -197,6 +197,23 @@ def observer(name: str) -> Case:
     )
 
 
+def heights() -> Case:
+    """Heights and a vertical speed from fix to fix, each fix a beat of its own."""
+    log = flown.flight(600.0, hz=1.0)
+    monitor = METHODS["height-agreement"].build(log.between(end_s=200.0), 0, Session()).monitor
+    part = log.between(200.0)
+    every = (flown.HEIGHT, flown.DOWN, flown.BARO)
+    return Case(
+        "height-agreement",
+        monitor,
+        samples(part.time, part.value, part.fresh),
+        lie=np.where(np.arange(5) == flown.HEIGHT, 60.0, 0.0),
+        back_s=80.0,
+        named=(flown.HEIGHT,),
+        lost={flown.HEIGHT: every},
+    )
+
+
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
     """The monitor of a joint test and one of repeats, for its channels in another order."""
     residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
@@ -237,7 +254,7 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 ZOO = {case.name: case for case in zoo()}
 MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
-HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS}
+HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS} | {"height-agreement": heights}
 ALONE = {"motion-deficit": deficit, "car": whole_car, NETWORK: arm, "arm-kalman": two_links, **MOTION, **HEIGHT}
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)

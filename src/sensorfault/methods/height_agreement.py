@@ -26,9 +26,9 @@ GAP_S = 3.0  # or three periods of the receiver
 AFRESH_S = 300.0  # a longer disagreement is taken for a witness set anew
 REBUILD_S = 120.0  # a height is believed for so long on another's word
 READMIT_S = 2.0
-MARGIN = 1.25  # on every limit, for what a flight of minutes has not shown
-FINEST_M = 0.1  # no two heights agree better
-LEAST_S = 120.0  # a minute only fills the memory
+MARGIN = 1.5  # on every limit, for what a flight of minutes has not shown
+FINEST_M = 0.3  # no two heights agree better
+LEAST_S = 60.0  # that can be compared, after the minute that fills the memory
 
 
 def build(log: Log, seed: int, session: Session) -> Model:
@@ -81,15 +81,15 @@ def _limit(log: Log, residual: HeightWitnesses) -> Float[np.ndarray, "2 P"]:
     """A margin above the farthest that each pair was apart; +inf for one that could never be compared.
 
     Raises:
-        LogError: none could.
+        LogError: too few could.
     """
     shape = 2, len(residual.pairs)
     score = np.asarray(replay_log(_monitor(log, residual, np.ones(shape), np.inf), log).scores[0])
     tested = np.isfinite(score)
-    if not tested.any():
+    if tested[:, len(residual.pairs) :].any(axis=1).sum() * log.period_s < LEAST_S:
         raise LogError(
-            f"{log.name} shows {log.duration_s:.0f} s of heights that can be compared, {NAME} needs more than "
-            f"{LEAST_S:g} s without a gap; give a longer flight."
+            f"{log.name} is {log.duration_s:.0f} s long, {NAME} needs {2 * LEAST_S:g} s of heights without a gap: one "
+            "minute to remember and one to compare; give a longer flight."
         )
     largest = np.maximum(np.where(tested, score, 0.0).max(axis=0), FINEST_M)
     return np.where(tested.any(axis=0), MARGIN * largest, np.inf).reshape(shape)
@@ -146,7 +146,7 @@ def _monitor(log: Log, residual: HeightWitnesses, limit: Float[np.ndarray, "2 P"
         residual=residual,
         branches=(Branch(agreement, Fixed(jnp.full(limit.size, most))),),
         decision=Exceed(share=1.0),
-        recovery=Rebuild(jnp.asarray(horizon), jnp.asarray(READMIT_S), channels),
+        recovery=Rebuild(jnp.asarray(horizon), jnp.full(channels, READMIT_S), channels),
         hold_s=jnp.asarray(hold_s(log)),
         owner=owner,
         together=False,
@@ -162,7 +162,7 @@ RECIPE = Recipe(
     name=NAME,
     title="Receiver, barometer and vertical speeds against each other over a minute; who lies, if a third one knows",
     source="mean pair against an independent reference, EXPERIMENTS multistep; isolation by who disagrees with whom",
-    promise="none; limits are a quarter above the largest of the healthy flight: of tests with a memory of a minute a "
-    "flight of minutes shows no rate",
+    promise="none; limits are half as high again as the largest of the healthy flight: a flight of minutes shows no "
+    "rate of what has a memory of a minute",
     build=build,
 )

@@ -5,7 +5,7 @@ import sensorfault._jax  # isort: skip  # noqa: F401
 from typing import NamedTuple
 
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Bool, Float
 
 RECENT, PAST, OLDEST = 10, 50, 10  # beats: the newest, those remembered before, and of these the reference's
 NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be believed
@@ -23,10 +23,10 @@ class Memory(NamedTuple):
     total: Float[Array, " P"]  # of the differences in this beat [m]
     many: Float[Array, " P"]
     recent: Float[Array, "R P"]  # the newest beats' means, the newest last [m]
-    lived: Int[Array, "R P"]  # 1 where there was one
-    clean: Int[Array, "R P"]  # 1 where it was believed
+    lived: Bool[Array, "R P"]  # whether there was one
+    clean: Bool[Array, "R P"]  # whether it was believed
     past: Float[Array, "Q P"]  # what was believed before them [m]
-    trusted: Int[Array, "Q P"]
+    trusted: Bool[Array, "Q P"]
     kept: Float[Array, "2 P"]  # [m]
     sure: Bool[Array, "2 P"]
     doubted: Float[Array, " P"]  # for how long [s]
@@ -35,8 +35,8 @@ class Memory(NamedTuple):
     def empty(cls, pairs: int, began: Float[Array, ""]) -> "Memory":
         """Nothing is known yet."""
         none, recent, past = jnp.zeros(pairs), jnp.zeros((RECENT, pairs)), jnp.zeros((PAST, pairs))
-        flags, two = recent.astype(int), jnp.zeros((2, pairs))
-        return cls(began, none, none, recent, flags, flags, past, past.astype(int), two, two > 0, none)
+        no, two = recent > 0, jnp.zeros((2, pairs))
+        return cls(began, none, none, recent, no, no, past, past > 0, two, two > 0, none)
 
     def heard(self, both: Bool[Array, " P"], difference: Float[Array, " P"]) -> "Memory":
         """With these differences in the beat."""
@@ -49,25 +49,24 @@ class Memory(NamedTuple):
         return Memory(*[jnp.where(over, a, b) for a, b in zip(self._next(now), self, strict=True)])
 
     def _next(self, now: Float[Array, ""]) -> "Memory":
-        lives, held = (self.many > 0).astype(int), self.doubted > 0
-        # what leaves the newest beats without having been believed is remembered as its reference
-        believed = self.clean[0] > 0
+        lives, held = self.many > 0, self.doubted > 0
+        # of a beat that was doubted the reference is remembered instead
+        clean, doubtful = self.clean[0], self.lived[0] & ~self.clean[0]
         after = self._replace(
             began=now,
             total=jnp.zeros_like(self.total),
             many=jnp.zeros_like(self.many),
             recent=_shifted(self.recent, self.total / jnp.maximum(self.many, 1)),
             lived=_shifted(self.lived, lives),
-            clean=_shifted(self.clean, jnp.where(held, 0, lives)),
-            past=_shifted(self.past, jnp.where(believed, self.recent[0], self.kept[1])),
-            trusted=_shifted(self.trusted, jnp.where(believed, 1, (held & self.sure[1]).astype(int))),
+            clean=_shifted(self.clean, lives & ~held),
+            past=_shifted(self.past, jnp.where(clean, self.recent[0], self.kept[1])),
+            trusted=_shifted(self.trusted, clean | (doubtful & self.sure[1])),
             doubted=jnp.where(held, self.doubted + (now - self.began), 0.0),
         )
-        before, oldest = after.clean[:-NEWEST], after.trusted[:OLDEST]
-        many = jnp.stack([before.sum(axis=0), oldest.sum(axis=0)])
-        total = jnp.stack([(after.recent[:-NEWEST] * before).sum(axis=0), (after.past[:OLDEST] * oldest).sum(axis=0)])
-        anew = (many >= jnp.asarray([[ENOUGH], [OLDEST // 2]])) & ~held[None]
-        kept = jnp.where(anew, total / jnp.maximum(many, 1), self.kept)
+        before, these = _mean(after.recent[:-NEWEST], after.clean[:-NEWEST])
+        oldest, those = _mean(after.past[:OLDEST], after.trusted[:OLDEST])
+        anew = jnp.stack([these >= ENOUGH, those >= OLDEST / 2]) & ~held[None]
+        kept = jnp.where(anew, jnp.stack([before, oldest]), self.kept)
         return after._replace(kept=kept, sure=self.sure | anew)
 
     def gaps(self) -> tuple[Float[Array, "2 P"], Bool[Array, "2 P"]]:
@@ -76,10 +75,9 @@ class Memory(NamedTuple):
         """
         gaps, known = [], []
         for length, kept, sure in zip((NEWEST, RECENT), self.kept, self.sure, strict=True):
-            lived = self.lived[-length:]
-            many = lived.sum(axis=0)
-            gaps.append((self.recent[-length:] * lived).sum(axis=0) / jnp.maximum(many, 1) - kept)
-            known.append(sure & (many >= (length + 1) // 2))
+            newest, many = _mean(self.recent[-length:], self.lived[-length:])
+            gaps.append(newest - kept)
+            known.append(sure & (many >= length / 2))
         return jnp.stack(gaps), jnp.stack(known)
 
     def doubting(self, begins: Bool[Array, " P"], ends: Bool[Array, " P"]) -> "Memory":
@@ -92,12 +90,18 @@ class Memory(NamedTuple):
         return self._replace(
             total=jnp.where(pairs, 0.0, self.total),
             many=jnp.where(pairs, 0.0, self.many),
-            lived=jnp.where(pairs, 0, self.lived),
-            clean=jnp.where(pairs, 0, self.clean),
-            trusted=jnp.where(pairs, 0, self.trusted),
-            sure=self.sure & ~pairs,
+            lived=self.lived & ~pairs[None],
+            clean=self.clean & ~pairs[None],
+            trusted=self.trusted & ~pairs[None],
+            sure=self.sure & ~pairs[None],
             doubted=jnp.where(pairs, 0.0, self.doubted),
         )
+
+
+def _mean(beats: Float[Array, "B P"], there: Bool[Array, "B P"]) -> tuple[Float[Array, " P"], Float[Array, " P"]]:
+    """Of those that are there, and how many they are."""
+    many = there.astype(beats.dtype).sum(axis=0)
+    return jnp.where(there, beats, 0.0).sum(axis=0) / jnp.maximum(many, 1), many
 
 
 def _shifted(ring: Array, new: Array) -> Array:

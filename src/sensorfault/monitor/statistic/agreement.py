@@ -27,7 +27,8 @@ class Agreement(eqx.Module):
         told = residual.extra
         channels = jnp.arange(len(self.owner))
         covers = jnp.stack([(channels == i) | (channels == j) for i, j in self.pairs])  # pair by channel
-        known = told.known & ~(covers & jnp.asarray(residual.out)).any(axis=1)[None]
+        out = covers & jnp.broadcast_to(jnp.asarray(residual.out), channels.shape)[None]
+        known = told.known & ~out.any(axis=1)[None]
         value = jnp.abs(told.gap) / (self.limit * told.growth[None])
         over = known & (value > 1)
         named = self._named(over.any(axis=0), covers)
