@@ -13,7 +13,7 @@ from sensorfault.model import TOGETHER, Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
-from sensorfault.monitor.residual.height_witnesses import HeightWitnesses
+from sensorfault.monitor.residual.two_heights import TwoHeights
 from sensorfault.monitor.statistic.agreement import Agreement
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.numerics.apart import PAST, RECENT
@@ -23,6 +23,7 @@ from sensorfault.vehicles.fixed_wing import Roles, roles
 
 BEAT_S = 1.0
 GAP_S = 3.0  # or three periods of the receiver
+MEMORY_S = 60.0  # over which the difference of two heights is learned
 AFRESH_S = 300.0  # a longer disagreement is taken for a witness set anew
 REBUILD_S = 120.0  # a height is believed for so long on another's word
 READMIT_S = 2.0
@@ -40,20 +41,28 @@ def build(log: Log, seed: int, session: Session) -> Model:
     found = roles(log)
     witnesses = _witnesses(log, found)
     columns, pairs = tuple(witnesses), tuple(combinations(range(len(witnesses)), 2))
-    residual = HeightWitnesses(
+    free = Agreement(
+        limit=jnp.ones((2, len(pairs))),
         upward=jnp.asarray(list(witnesses.values())),
         beat_s=jnp.asarray(BEAT_S),
         gap_s=jnp.asarray(max(GAP_S, 3 * _period_s(log, columns[0]))),
         afresh_s=jnp.asarray(AFRESH_S),
-        variance=jnp.ones(len(log.channels)),
         columns=columns,
         pairs=pairs,
-        stands_in=_stands_in(columns, list(witnesses.values()), pairs),
+        owner=owners(log.channels, log.sensors),
+    )
+    residual = TwoHeights(
+        memory_s=jnp.asarray(MEMORY_S),
+        variance=jnp.asarray(1.0),
+        heights=tuple(c for c, upward in witnesses.items() if upward == 0),
+        watched=columns,
+        channels=len(log.channels),
     )
     session.tell("measuring how far healthy heights move apart")
-    limit = _limit(log, residual)
-    variance = _variance(log, residual, limit)
+    limit = _limit(log, residual, free)
+    variance = (limit[0, 0] / 3) ** 2  # of the first two witnesses, which are the heights if there are two
     residual = eqx.tree_at(lambda r: r.variance, residual, jnp.asarray(variance))
+    agreement = eqx.tree_at(lambda s: s.limit, free, jnp.asarray(limit))
     paths = [log.channels[c].path for c in columns]
     names = [TOGETHER.join((paths[i], paths[j])) for i, j in pairs]
     spans = [f"apart within {length * BEAT_S:g} s" for length in (RECENT, RECENT + PAST)]
@@ -64,35 +73,35 @@ def build(log: Log, seed: int, session: Session) -> Model:
         "smallest_drift": dict(zip(names, (limit[-1] / ((RECENT + PAST) * BEAT_S)).tolist(), strict=True)),
         "not_watched": {c.path: "not of the height" for c in log.channels if c.path not in paths},
     }
+    sigma = np.where(np.isin(np.arange(len(log.channels)), residual.heights), np.sqrt(variance), 1.0)
     return Model(
         method=NAME,
-        monitor=_monitor(log, residual, limit, 1.0),
+        monitor=_monitor(log, residual, agreement, 1.0),
         channels=log.channels,
         sensors=log.sensors,
         tests=tuple((span, name) for span in spans for name in names),
         watched=tuple(np.isin(np.arange(len(log.channels)), columns).tolist()),
         tick_s=log.period_s,
-        sigma=tuple(np.sqrt(variance).tolist()),
+        sigma=tuple(sigma.tolist()),
         summary=told,
     )
 
 
-def _limit(log: Log, residual: HeightWitnesses) -> Float[np.ndarray, "2 P"]:
+def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray, "2 P"]:
     """A margin above the farthest that each pair was apart; +inf for one that could never be compared.
 
     Raises:
         LogError: too few could.
     """
-    shape = 2, len(residual.pairs)
-    score = np.asarray(replay_log(_monitor(log, residual, np.ones(shape), np.inf), log).scores[0])
+    score = np.asarray(replay_log(_monitor(log, residual, free, np.inf), log).scores[0])
     tested = np.isfinite(score)
-    if tested[:, len(residual.pairs) :].any(axis=1).sum() * log.period_s < LEAST_S:
+    if tested[:, len(free.pairs) :].any(axis=1).sum() * log.period_s < LEAST_S:
         raise LogError(
             f"{log.name} is {log.duration_s:.0f} s long, {NAME} needs {2 * LEAST_S:g} s of heights without a gap: one "
             "minute to remember and one to compare; give a longer flight."
         )
     largest = np.maximum(np.where(tested, score, 0.0).max(axis=0), FINEST_M)
-    return np.where(tested.any(axis=0), MARGIN * largest, np.inf).reshape(shape)
+    return np.where(tested.any(axis=0), MARGIN * largest, np.inf).reshape(free.limit.shape)
 
 
 def _witnesses(log: Log, found: Roles) -> dict[int, float]:
@@ -113,42 +122,17 @@ def _witnesses(log: Log, found: Roles) -> dict[int, float]:
     return witnesses
 
 
-def _stands_in(
-    columns: tuple[int, ...], upward: list[float], pairs: tuple[tuple[int, int], ...]
-) -> tuple[tuple[int, int, float], ...]:
-    """For each of two heights the other one."""
-    return tuple(
-        (w, p, 1.0 if i == w else -1.0)
-        for p, (i, j) in enumerate(pairs)
-        for w in (i, j)
-        if upward[i] == 0 and upward[j] == 0
-    )
-
-
-def _variance(log: Log, residual: HeightWitnesses, limit: Float[np.ndarray, "2 P"]) -> Float[np.ndarray, " C"]:
-    """Of a height on another's word: a limit is about three standard deviations. 1 where nothing stands in."""
-    variance = np.ones(len(log.channels))
-    for w, pair, _ in residual.stands_in:
-        if np.isfinite(limit[0, pair]):
-            variance[residual.columns[w]] = (limit[0, pair] / 3) ** 2
-    return variance
-
-
-def _monitor(log: Log, residual: HeightWitnesses, limit: Float[np.ndarray, "2 P"], most: float) -> Monitor:
-    """Alarm where a pair is `most` limits apart."""
+def _monitor(log: Log, residual: TwoHeights, agreement: Agreement, limit: float) -> Monitor:
+    """Alarm where a pair is so many times its limit apart. A vertical speed has no stand-in."""
     channels = len(log.channels)
-    horizon = np.zeros(channels)
-    horizon[[residual.columns[w] for w, _, _ in residual.stands_in]] = REBUILD_S
-    owner = owners(log.channels, log.sensors)
-    pairs = tuple((residual.columns[i], residual.columns[j]) for i, j in residual.pairs)
-    agreement = Agreement(jnp.asarray(limit), pairs, owner)
+    stands_in = np.isin(np.arange(channels), residual.heights) & (len(residual.heights) == 2)
     return Monitor(
         residual=residual,
-        branches=(Branch(agreement, Fixed(jnp.full(limit.size, most))),),
+        branches=(Branch(agreement, Fixed(jnp.full(agreement.limit.size, limit))),),
         decision=Exceed(share=1.0),
-        recovery=Rebuild(jnp.asarray(horizon), jnp.full(channels, READMIT_S), channels),
+        recovery=Rebuild(jnp.asarray(np.where(stands_in, REBUILD_S, 0.0)), jnp.full(channels, READMIT_S), channels),
         hold_s=jnp.asarray(hold_s(log)),
-        owner=owner,
+        owner=agreement.owner,
         together=False,
     )
 

@@ -14,7 +14,6 @@ from sensorfault.monitor.residual.difference import Difference
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.height_kalman import HeightKalman
-from sensorfault.monitor.residual.height_witnesses import HeightWitnesses
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.multistep_observer import MultistepObserver
 from sensorfault.monitor.residual.online_network import OnlineNetwork
@@ -22,6 +21,7 @@ from sensorfault.monitor.residual.prediction import Prediction
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.residual.several import Several
 from sensorfault.monitor.residual.side_force import SideForce
+from sensorfault.monitor.residual.two_heights import TwoHeights
 from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
 from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.statistic.agreement import Agreement
@@ -71,7 +71,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(ArmKalman, TwoLink),
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
-        *(HeightWitnesses, Agreement),
+        *(TwoHeights, Agreement),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
         *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),

@@ -7,10 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.monitor.residual.height_witnesses import Apart, HeightWitnesses
-from sensorfault.monitor.statistic.agreement import Agreement
+from sensorfault.monitor.residual.two_heights import TwoHeights
+from sensorfault.monitor.statistic.agreement import Agreement, named
 from sensorfault.run import samples
-from sensorfault.types import Residual, Trust
+from sensorfault.types import Trust
 
 HEIGHT, BARO, DOWN = range(3)
 PAIRS = ((0, 1), (0, 2), (1, 2))
@@ -33,35 +33,39 @@ def log() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return time, value, fresh
 
 
-def residual() -> HeightWitnesses:
-    return HeightWitnesses(
+def agreement() -> Agreement:
+    return Agreement(
+        limit=jnp.ones((2, 3)),
         upward=jnp.asarray([0.0, 0.0, -1.0]),
         beat_s=jnp.asarray(BEAT_S),
         gap_s=jnp.asarray(GAP_S),
         afresh_s=jnp.asarray(1e3),
-        variance=jnp.ones(3),
         columns=(HEIGHT, BARO, DOWN),
         pairs=PAIRS,
-        stands_in=((0, 0, 1.0), (1, 0, -1.0)),
+        owner=(0, 1, 0),
     )
 
 
-def told(doubted: slice) -> tuple[Apart, np.ndarray]:
-    """By the package; within `doubted` everything is under suspicion, yet taken in."""
+def told(doubted: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """By the package: gaps, which are known, and what is expected. Within `doubted` all is suspicious, yet taken in."""
     time, value, fresh = log()
     rows = samples(time, np.where(fresh, value, 0.0), fresh)
     suspect = np.zeros(ROWS, bool)
     suspect[doubted] = True
-    part = residual()
+    part = TwoHeights(jnp.asarray(20.0), jnp.asarray(1.0), (HEIGHT, BARO), (HEIGHT, BARO, DOWN), 3)
+    statistic = agreement()
 
-    def step(state, row):
+    def step(states, row):
         sample, doubt = row
         sample = sample._replace(present=sample.fresh)
-        found, work = part.evaluate(state, sample)
+        found, work = part.evaluate(states[0], sample)
+        _, pending = statistic.evaluate(states[1], found)
         trust = Trust(sample.value, sample.fresh, sample.fresh & False, sample.fresh & ~doubt, sample.born)
-        return part.update(work, trust), (found.extra, found.expected)
+        gaps = pending.state.memory.gaps()
+        return (part.update(work, trust), statistic.update(pending, trust)), (*gaps, found.expected)
 
-    return jax.tree.map(np.asarray, jax.lax.scan(step, part.init(), (rows, jnp.asarray(suspect)))[1])
+    start = part.init(), statistic.init()
+    return jax.tree.map(np.asarray, jax.lax.scan(step, start, (rows, jnp.asarray(suspect)))[1])
 
 
 def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
@@ -142,16 +146,16 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("doubted", [slice(0, 0), slice(300, 312)])
 def test_gaps(doubted: slice) -> None:
-    apart, _ = told(doubted)
+    gap, known, _ = told(doubted)
     gaps, fixes = by_hand(doubted)
-    found = np.where(apart.known, apart.gap, np.nan)
+    found = np.where(known, gap, np.nan)
     assert np.isfinite(gaps).mean() > 0.2
     np.testing.assert_allclose(found[fixes], gaps[fixes], atol=1e-9)
 
 
 def test_a_height_is_expected_where_the_other_one_says() -> None:
     time, value, fresh = log()
-    _, expected = told(slice(0, 0))
+    *_, expected = told(slice(0, 0))
     rows = np.flatnonzero(fresh[:, HEIGHT] & fresh[:, BARO] & (time > 70) & (time < 120))
     np.testing.assert_allclose(expected[rows, HEIGHT], value[rows, BARO] + 50, atol=0.2)
     np.testing.assert_allclose(expected[rows, BARO], value[rows, HEIGHT] - 50, atol=0.2)
@@ -171,15 +175,9 @@ def test_who_is_named() -> None:
     """All that three and four witnesses may say of each other; the first and the third are of one sensor."""
     for owner in ((0, 1, 0), (0, 1, 0, 2)):
         pairs = tuple(combinations(range(len(owner)), 2))
-        channels, none = len(owner), jnp.zeros(len(owner))
-        part = Agreement(jnp.full((2, len(pairs)), 2.0), pairs, owner)
-        run = jax.jit(lambda residual, part=part: part.evaluate((), residual)[0])
-        for says in product((False, True), repeat=len(pairs)):
-            gap = jnp.asarray([[3.0 if wrong else 1.0 for wrong in says], [0.0] * len(pairs)])
-            apart = Apart(gap, jnp.ones(gap.shape, bool), jnp.ones(len(pairs)))
-            valid = none == 0
-            residual = Residual(none[0], none, jnp.eye(channels), none, none, none, valid, ~valid, apart, ~valid)
-            score = run(residual)
-            accused = (np.asarray(score.blame) * (np.asarray(score.value) > 1)[:, None]).any(axis=0)
-            expected = named_by_hand(dict(zip(pairs, says, strict=True)), owner)
-            assert set(np.flatnonzero(accused).tolist()) == expected, (owner, says)
+        covers = jnp.asarray([[c in pair for c in range(len(owner))] for pair in pairs])
+        run = jax.jit(named, static_argnums=2)
+        for over in product((False, True), repeat=len(pairs)):
+            accused = np.asarray(run(jnp.asarray(over), covers, owner))
+            expected = named_by_hand(dict(zip(pairs, over, strict=True)), owner)
+            assert set(np.flatnonzero(accused).tolist()) == expected, (owner, over)
