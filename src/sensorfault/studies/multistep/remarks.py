@@ -98,12 +98,12 @@ def _other(told: Drift) -> str:
     found = [told.injected.mean(f"{HARD} {WHOLE} N{n}", KINEMATIC, "detection_rate", DRIFT) for n in steps]
     (network,) = [one for one in told.contenders if one.trained and not one.variant]
     learned = np.mean([network.typical[k] for k in network.of(MANY)])
+    own, plain = (told.real.mean(f"N{MANY}", method, "rms") for method in (NETWORK, KINEMATIC))
     return (
         f"D, {told.data}: fixes at 1 Hz, so N steps are N seconds; {network.flown.start} fixes to learn from and few "
         f"ramps to judge. With N = {MANY} the network errs by {learned:.1f} m on the part it learned from and by "
-        f"{told.real.mean(f'N{MANY}', NETWORK, 'rms'):.1f} m on the part judged, the mean of the vertical speeds at both "
-        f"ends of a second by {told.real.mean(f'N{MANY}', KINEMATIC, 'rms'):.1f} m: it has learned this flight, not how "
-        f"an aircraft climbs. Its limits do not hold ({HARD}: {far:.0%} of the healthy steps judged pass them), and at "
+        f"{own:.1f} m on the part judged, the mean of the vertical speeds at both ends of a second by {plain:.1f} m: it "
+        f"has learned this flight, not how an aircraft climbs. Its limits do not hold ({HARD}: {far:.0%} of the healthy steps judged pass them), and at "
         f"{MATCHED} it flags {rate:.1%}, by chance {chance:.1%}. Over the whole flight the kinematic observer flags "
         f"{', '.join(f'{x:.0%}' for x in found)} with N = {', '.join(map(str, steps))}."
     )
