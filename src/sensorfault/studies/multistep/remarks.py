@@ -102,10 +102,11 @@ def _other(told: Drift) -> str:
     return (
         f"D, {told.data}: fixes at 1 Hz, so N steps are N seconds; {network.flown.start} fixes to learn from and few "
         f"ramps to judge. With N = {MANY} the network errs by {learned:.1f} m on the part it learned from and by "
-        f"{own:.1f} m on the part judged, the mean of the vertical speeds at both ends of a second by {plain:.1f} m: it "
-        f"has learned this flight, not how an aircraft climbs. Its limits do not hold ({HARD}: {far:.0%} of the healthy steps judged pass them), and at "
-        f"{MATCHED} it flags {rate:.1%}, by chance {chance:.1%}. Over the whole flight the kinematic observer flags "
-        f"{', '.join(f'{x:.0%}' for x in found)} with N = {', '.join(map(str, steps))}."
+        f"{own:.1f} m on the part judged, the mean of the vertical speeds at both ends of a second by {plain:.1f} m: "
+        f"it has learned this flight, not how an aircraft climbs. Its limits do not hold ({HARD}: {far:.0%} of the "
+        f"healthy steps judged pass them), and at {MATCHED} it flags {rate:.1%}, by chance {chance:.1%}. Over the "
+        f"whole flight the kinematic observer flags {', '.join(f'{x:.0%}' for x in found)} with N = "
+        f"{', '.join(map(str, steps))}."
     )
 
 
