@@ -172,7 +172,7 @@ def two_joints(rows: int) -> Log:
 OBSERVERS = {
     "multistep-observer": functools.partial(
         multistep_observer.build,
-        setting=multistep_observer.Setting(steps=5, horizon_s=3.0, schedule=Schedule(epochs=20, rate=1e-2)),
+        setting=multistep_observer.Setting(steps=(1, 5), horizon_s=3.0, schedule=Schedule(epochs=20, rate=1e-2)),
     ),
     "kinematic-observer": functools.partial(
         kinematic_observer.build, setting=kinematic_observer.Setting((0.2, 1.0, 2.4), horizon_s=3.0)
