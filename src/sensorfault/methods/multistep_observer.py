@@ -16,6 +16,7 @@ from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.threshold.adaptive import Adaptive
 from sensorfault.replay import replay_log
+from sensorfault.training.fixes import Fixes
 from sensorfault.training.height_kalman import fit_height_kalman
 from sensorfault.training.limits import tail_limit
 from sensorfault.training.multistep import Schedule, train_steps
@@ -49,27 +50,15 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     Raises:
         LogError: no height, nothing that foretells it, or too few measurements that follow each other.
     """
-    heights = Heights.of(NAME, log)
-    climb = heights.roles.vertical if heights.roles.vertical is not None else heights.roles.inertial
-    columns = tuple(i for i in (climb, *heights.roles.inputs) if i is not None)
-    if not columns:
-        raise LogError(
-            f"{log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the height; "
-            "name the columns in vehicle.toml, or take another method."
-        )
-    cut = log.time[0] + TAUGHT * log.duration_s
+    heights, cut = Heights.of(NAME, log), log.time[0] + TAUGHT * log.duration_s
+    columns = _columns(heights)
     learn, unseen = heights.fixes(columns, end_s=cut), heights.fixes(columns, cut)
-    steps = observed.in_steps(setting.spans_s, learn) if setting.spans_s else setting.steps
-    for n in (n for n in steps if not len(unseen.windows(n))):
-        raise LogError(
-            f"{log.name} has no unbroken run of {n} steps of its height in its last part, on which {NAME} sets its "
-            "limits; give it more data, or take fewer steps."
-        )
+    steps = _steps(learn, unseen, setting)
     session.tell(f"teaching a network over {max(steps)} steps")
     taught = train_steps(learn, (max(steps),), (seed,), setting.schedule)
     (network,) = taught.nets[0]
-    watched = observed.observer(network, unseen, steps, heights.column)
     session.tell("measuring what it leaves")
+    watched = observed.observer(network, unseen, steps, heights.column)
     companion = fit_height_kalman(log, heights.column, heights.roles)
     mine = np.arange(len(log.channels)) == heights.column
     residual = Several((watched, companion), jnp.asarray(np.stack([mine, mine & False])))
@@ -87,6 +76,39 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     told = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), **weights}
     watching = observed.monitor(log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s)
     return observed.model(NAME, heights, watching, watched, unseen.period_s, told)
+
+
+def _columns(heights: Heights) -> tuple[int, ...]:
+    """What the network is told besides the height.
+
+    Raises:
+        LogError: nothing.
+    """
+    found = heights.roles
+    climb = found.vertical if found.vertical is not None else found.inertial
+    columns = tuple(i for i in (climb, *found.inputs) if i is not None)
+    if not columns:
+        raise LogError(
+            f"{heights.log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the "
+            "height; name the columns in vehicle.toml, or take another method."
+        )
+    return columns
+
+
+def _steps(learn: Fixes, unseen: Fixes, setting: Setting) -> tuple[int, ...]:
+    """The bank's numbers of steps.
+
+    Raises:
+        LogError: one of them cannot be judged on what is not learned from.
+    """
+    steps = observed.in_steps(setting.spans_s, learn) if setting.spans_s else setting.steps
+    for n in steps:
+        if not len(unseen.windows(n)):
+            raise LogError(
+                f"{learn.name} has no unbroken run of {n} steps of its height in its last part, on which {NAME} sets "
+                "its limits; give it more data, or take fewer steps."
+            )
+    return steps
 
 
 def _statistic(heights: Heights) -> Of:
