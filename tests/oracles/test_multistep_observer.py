@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import pairwise
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from laws.walk import walk
 from sensorfault.methods import kinematic_observer
 from sensorfault.run import samples
 from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT, OK, UNKNOWN
+from sensorfault.types import FAULT, OK, UNKNOWN, Trust
 from sensorfault.vehicles.height import Climb, StepNetwork
 
 STEPS = (1, 5, 12)
@@ -159,6 +160,18 @@ def test_a_height_that_was_not_trusted_starts_nothing() -> None:
     spread = told.reports.residual.cov[first:140, flown.HEIGHT, flown.HEIGHT]
     assert (np.diff(spread) >= 0).all()
     assert spread[-1] > 1.1 * spread[0]
+
+
+def test_nothing_stands_in_where_nothing_is_foretold() -> None:
+    """A height that is kept out before there is a past begins none, though the monitor would fill it in."""
+    log = flown.flight()
+    part = kinematic_observer.build(log, 0, SILENT, kinematic_observer.Setting((1.0,))).monitor.residual
+    row = jax.tree.map(lambda x: x[0], samples(log.time[:1], log.value[:1], log.fresh[:1]))
+    for measured in (False, True):
+        _, pending = part.evaluate(part.init(), row)
+        believed = jnp.asarray(np.arange(5) != flown.HEIGHT) | measured
+        state = part.update(pending, Trust(row.value, believed, ~believed, believed, row.born))
+        assert int(state.whole) == int(measured)
 
 
 def test_no_past_goes_over_a_gap() -> None:

@@ -25,7 +25,7 @@ ALL = "all"
 def command(name: str, seeds: int, quick: bool, out: Path | None, json_path: str | None) -> None:
     """Run the experiments of a paper and print ours beside its numbers.
 
-    STUDY is min2021, niu1998, or all. Its real logs are found through SENSORFAULT_DATA.
+    STUDY is min2021, niu1998, multistep, or all. Its real logs are found through SENSORFAULT_DATA.
     """
     from sensorfault.studies.commit import commit
 

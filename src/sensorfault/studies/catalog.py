@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from sensorfault.studies.findings import Effort, Findings
 from sensorfault.studies.min2021.study import study as min2021
+from sensorfault.studies.multistep.study import study as multistep
 from sensorfault.studies.niu1998.study import study as niu1998
 
 
@@ -40,6 +41,13 @@ STUDIES: dict[str, Study] = {
             "Niu & Zhao 1998",
             niu1998,
             {"B": "Drifts, and faults of all kinds"},
+        ),
+        Study(
+            "multistep",
+            "Incipient drift of an aircraft's height, seen by an observer of many steps",
+            "Wang S. et al.",
+            multistep,
+            {"D": "Ramps, observed over N steps", "D-slow": "Slow drift against a barometer, over a minute or more"},
         ),
     )
 }

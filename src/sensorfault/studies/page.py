@@ -49,8 +49,9 @@ def titled(study: Study, code: str) -> str:
 
 
 def _home(figure: Figure, codes: Sequence[str]) -> str | None:
-    """The experiment whose name a figure's begins with."""
-    return next((code for code in codes if figure.name.lower().startswith(code.lower())), None)
+    """The experiment whose name a figure's begins with; the longest name, if several do."""
+    own = (code for code in codes if figure.name.lower().startswith(code.lower()))
+    return max(own, key=len, default=None)
 
 
 def _table(table: Table) -> str:

@@ -6,9 +6,10 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.model import MISSED
+from sensorfault.model import MISSED, hold_s
 
 LEAST_FIXES = 50
+GAP_S = 2.0  # over so long a roll-out goes on, whatever the rate of the heights
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Fixes:
                 f"{LEAST_FIXES}; give it more data."
             )
         period_s = float(np.median(np.diff(log.time[new])))
-        held = np.column_stack([_held(log, column, period_s) for column in columns])
+        held = np.column_stack([_held(log, column) for column in columns])
         gap_s = gap(period_s, log.period_s)
         return cls(log.time[new], log.value[new, height], held[new], columns, gap_s, log.name)
 
@@ -69,14 +70,12 @@ class Fixes:
 
 def gap(period_s: float, tick_s: float) -> float:
     """How long a height may be silent before the past is void [s]; half a tick allows for jitter."""
-    return MISSED * period_s + tick_s / 2
+    return max(MISSED * period_s, GAP_S) + tick_s / 2
 
 
-def _held(log: Log, column: int, period_s: float) -> Float[np.ndarray, " T"]:
+def _held(log: Log, column: int) -> Float[np.ndarray, " T"]:
     """The last value of a channel, for as long as it stands; NaN before the first and after."""
     came = log.fresh[:, column] & np.isfinite(log.value[:, column])
     last = np.maximum.accumulate(np.where(came, np.arange(len(log)), -1))
-    own = {sensor.name: sensor.period_s for sensor in log.sensors}[log.channels[column].sensor]
-    age = log.time - log.time[last]
-    stands = (last >= 0) & (age <= max(1.5 * own, 0.0) + log.period_s / 2)
+    stands = (last >= 0) & (log.time - log.time[last] <= hold_s(log)[column])
     return np.where(stands, log.value[last, column], np.nan)

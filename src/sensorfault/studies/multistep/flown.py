@@ -12,8 +12,8 @@ from sensorfault.vehicles.fixed_wing import Roles, roles
 
 LEARN = 0.7  # of the flight
 SLOPES = tuple(round(0.1 * i, 1) for i in range(1, 11))  # [m/s]
-EVERY, FAULTY = 150, 400  # steps from one onset to the next, and of a fault, or to the end of the flight
-LEAST = 50  # steps that a fault must have
+EVERY_S, FAULTY_S = 30.0, 80.0  # from one onset to the next, and of a fault, or to the end: 150 and 400 steps at 5 Hz
+LEAST_S = 10.0  # that a fault must last
 
 
 @dataclass(frozen=True)
@@ -60,21 +60,26 @@ class Flown:
 
 @dataclass(frozen=True)
 class Ramps:
-    """Cell 0 has no fault; then every slope at every onset. `height`: of each cell [m]."""
+    """Cell 0 has no fault; then every slope at every onset.
+
+    `height`: of each cell [m]; `slope` [m/s], `onset` [row] and `faulty` [rows]: of its ramp.
+    """
 
     log: Log
     height: Float[np.ndarray, "N T"]
     slope: Float[np.ndarray, " N"]
     onset: Int[np.ndarray, " N"]
+    faulty: int
 
     @classmethod
-    def on(cls, log: Log, slopes: tuple[float, ...] = SLOPES, every: int = EVERY) -> "Ramps":
-        """From step `every` on, for as long as there is room."""
-        onsets = np.arange(every, len(log) - LEAST, every)
+    def on(cls, log: Log, slopes: tuple[float, ...] = SLOPES) -> "Ramps":
+        """From EVERY_S on, for as long as there is room."""
+        every, faulty, least = (round(span / log.sensors[0].period_s) for span in (EVERY_S, FAULTY_S, LEAST_S))
+        onsets = np.arange(every, len(log) - least, every)
         cells = [(0.0, 0), *((slope, int(onset)) for slope in slopes for onset in onsets)]
         slope, onset = (np.array(x) for x in zip(*cells, strict=True))
         since = np.maximum(log.time[None] - log.time[onset][:, None], 0.0)
-        return cls(log, log.value[:, 0] + slope[:, None] * since, slope, onset)
+        return cls(log, log.value[:, 0] + slope[:, None] * since, slope, onset, faulty)
 
     @property
     def logs(self) -> list[Log]:
@@ -84,7 +89,7 @@ class Ramps:
 
     def span(self, cell: int) -> slice:
         """The faulty rows of a cell that count."""
-        return slice(int(self.onset[cell]), min(int(self.onset[cell]) + FAULTY, len(self.log)))
+        return slice(int(self.onset[cell]), min(int(self.onset[cell]) + self.faulty, len(self.log)))
 
 
 class Count(NamedTuple):

@@ -1,4 +1,4 @@
-"""Paper D: ramps on a height, observed over 1 to 15 steps on two real flights."""
+"""Paper D: ramps on a height, observed over 1 to 15 steps on two real flights; then slow drift by the minute."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,7 +9,9 @@ from sensorfault.studies.multistep.contenders import NETWORK
 from sensorfault.studies.multistep.drift import PRINTED, Drift, drifts
 from sensorfault.studies.multistep.figures import SLOW, of_drift
 from sensorfault.studies.multistep.remarks import remarks
+from sensorfault.studies.multistep.slow import slow
 
+STEPPED = 0.8  # share of the work
 PAPER = {  # of the mean over all slopes, and of figure 7; delays from the onset at step 500
     ("N1", None): {"detection_rate": 0.334, "delay_steps": 134.0},
     ("N12", None): {"detection_rate": 0.655, "delay_steps": 16.0},
@@ -25,13 +27,15 @@ def study(effort: Effort) -> Findings:
         LogError: a flight is not there; said before any work is done.
     """
     real("uav")
-    told = drifts(effort)
-    rows = tuple(row for one in told for row in _rows(one))
+    told = drifts(replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED * share)))
+    rows = tuple(row for one in told for row in rows_of(one))
     figures = tuple(figure for one in told for figure in of_drift(one))
-    return Findings(rows, figures, remarks(told))
+    over_steps = Findings(rows, figures, remarks(told))
+    flights = slow(replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED + (1 - STEPPED) * share)))
+    return over_steps + Findings(tuple(row for one in flights for row in one.rows()))
 
 
-def _rows(told: Drift) -> Iterator[Row]:
+def rows_of(told: Drift) -> Iterator[Row]:
     """With the paper's numbers beside its own method under its own threshold."""
     yield from told.real.rows()
     for row in told.injected.rows():
