@@ -141,9 +141,11 @@ def _rest(true: Float[np.ndarray, "T 6"], rate_hz: float, rng: np.random.Generat
     """Attitude with an error that wanders, commands as they are, and an airspeed with noise."""
     n = len(true)
     wander = np.stack([gauss_markov(rng, n, 1 / rate_hz, LEVEL_S) for _ in range(3)], axis=1)
-    return true + np.column_stack([LEVEL_SD * wander, np.zeros((n, 2)), PITOT_SD * rng.standard_normal(n)])
+    error = np.column_stack([LEVEL_SD * wander, np.zeros((n, 2)), PITOT_SD * rng.standard_normal(n)])
+    return np.asarray(true + error)
 
 
 def _held(rows: Float[np.ndarray, "n k"], new: Bool[np.ndarray, " T"]) -> Float[np.ndarray, "T k"]:
     """Each row until the next."""
-    return np.asarray(rows.take(np.cumsum(new) - 1, axis=0))
+    row: Float[np.ndarray, "T k"] = rows[np.cumsum(new) - 1]
+    return row

@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float
 
 from sensorfault.logs.table import Log, Sensor
 from sensorfault.methods import cusum, drifting, mean_pair, ramp_glr, slope
-from sensorfault.methods.drifting import Setting, Statistic, Test
+from sensorfault.methods.drifting import DriftTest, Setting, Statistic
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.residual.difference import Difference
 from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
@@ -47,19 +47,22 @@ def _chi_square(setting: Setting, channels: int) -> Statistic:
     return setting.windowed(WindowedChiSquare(), channels)
 
 
-_SLOTS = 210  # for the longest of WINDOWS: one compilation serves all
-_KEEPING, _FOLLOWING = Setting(slots=_SLOTS), Setting(memory_s=MEMORY_S, window_s=60.0, slots=_SLOTS)
-# Beside the recipes tests that are parts only. A window of 60 s is the prototype's.
-CONTENDERS: dict[str, tuple[Test, dict[str, Setting]]] = {
-    slope.NAME: (slope.statistic, {"": _KEEPING, SHORT: replace(_KEEPING, window_s=60.0)}),
-    mean_pair.NAME: (mean_pair.statistic, {"": _KEEPING, SHORT: replace(_KEEPING, window_s=60.0)}),
-    ramp_glr.NAME: (ramp_glr.statistic, {"": _KEEPING, SHORT: replace(_KEEPING, window_s=60.0)}),
-    cusum.NAME: (cusum.statistic, {"": cusum.SETTING}),
-    "ewma": (_ewma, {"": _FOLLOWING}),
-    "averaged-innovation": (_averaged, {"": _FOLLOWING}),
-    "windowed-chi-square": (_chi_square, {"": _FOLLOWING}),
+SLOTS = 210  # for the longest of WINDOWS: one compilation serves all
+_FOLLOWING = Setting(memory_s=MEMORY_S, window_s=60.0)
+# Beside the recipes tests that are parts only.
+TESTS = {
+    test.name: test
+    for test in (
+        slope.TEST,
+        mean_pair.TEST,
+        ramp_glr.TEST,
+        cusum.TEST,
+        DriftTest("ewma", _ewma, _FOLLOWING),
+        DriftTest("averaged-innovation", _averaged, _FOLLOWING),
+        DriftTest("windowed-chi-square", _chi_square, _FOLLOWING),
+    )
 }
-SWEPT = (slope.NAME, ramp_glr.NAME)  # whose windows are swept, and which are judged without the lag too
+SWEPT = (slope.NAME, mean_pair.NAME, ramp_glr.NAME)  # whose windows are swept; judged without the lag too
 
 
 @dataclass(frozen=True)
@@ -148,17 +151,16 @@ def _flight(name: str, begun: float, effort: Effort) -> Slow:
     whole = compared(flight(name))
     found = Slow(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"))
     beats, plain = (Beats.of(name, whole, replace(drifting.DEFAULT, lagging=lagging)) for lagging in (True, False))
-    for i, (method, (test, variants)) in enumerate(CONTENDERS.items()):
-        effort.tell(f"{name}: {method}, ramps", begun + i / len(CONTENDERS) / len(FLIGHTS))
+    for i, (method, test) in enumerate(TESTS.items()):
+        effort.tell(f"{name}: {method}, ramps", begun + i / len(TESTS) / len(FLIGHTS))
         swept = () if effort.quick or method not in SWEPT else WINDOWS
-        settings = [*variants.values(), *(replace(_KEEPING, window_s=w) for w in swept)]
-        told = judge(beats, test, settings)
-        for variant, one in zip(variants, told, strict=False):
-            _add(found, method, variant, one)
+        own = replace(test.setting, slots=SLOTS)
+        told = judge(beats, test, [own, *(replace(own, window_s=w) for w in swept)])
+        _add(found, method, "", told[0])
         if swept:
-            found.windows[method] = dict(zip(swept, told[len(variants) :], strict=True))
-            (one,) = judge(plain, test, [_KEEPING])
-            _add(found, method, PLAIN, one)
+            found.windows[method] = dict(zip(swept, told[1:], strict=True))
+            _add(found, method, SHORT, found.windows[method][WINDOWS[0]])
+            _add(found, method, PLAIN, judge(plain, test, [own])[0])
     return found
 
 
@@ -169,7 +171,7 @@ def compared(whole: Log) -> Log:
     return pair.without(np.flatnonzero(~pair.fresh.any(axis=1)))
 
 
-def judge(beats: Beats, test: Test, settings: Sequence[Setting]) -> list[Told]:
+def judge(beats: Beats, test: DriftTest, settings: Sequence[Setting]) -> list[Told]:
     """Every rate from every onset, for each setting under its limit from the first half."""
     log, end = beats.log, float(beats.log.time[-1])
     onsets = np.arange(beats.half + BEGIN_S, end - LEAST_S, EVERY_S)
@@ -201,10 +203,10 @@ def _told(beats: Beats, score: Float[np.ndarray, "N T"], onsets: Float[np.ndarra
     )
 
 
-def _deaf(beats: Beats, test: Test, setting: Setting) -> Monitor:
+def _deaf(beats: Beats, test: DriftTest, setting: Setting) -> Monitor:
     """The monitor of a recipe, for a flight that has been brought to beats."""
     part = replace(beats.fitted, memory_s=jnp.asarray(setting.memory_s))
-    return drifting.monitor(beats.log, part, test(setting, 2), Fixed(jnp.full(2, jnp.inf)), setting)
+    return drifting.monitor(beats.log, part, test.statistic(setting, 2), Fixed(jnp.full(2, jnp.inf)), setting)
 
 
 def _add(found: Slow, method: str, variant: str, told: Told) -> None:
