@@ -13,8 +13,9 @@ from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods import drifting, ramp_glr, slope
 from sensorfault.simulation.flapping_wing import fly
+from sensorfault.studies.multistep.beats import Beats, compared
 from sensorfault.studies.multistep.flights import flight
-from sensorfault.studies.multistep.slow import RATES, SLOTS, Beats, Told, compared, judge
+from sensorfault.studies.multistep.slow import RATES, SLOTS, Told, judge
 
 MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}
 
