@@ -14,7 +14,7 @@ from sensorfault.model import Model
 from sensorfault.training.gradient import Plan
 from sensorfault.training.online import Learning, noise, steps
 from sensorfault.training.session import SILENT
-from sensorfault.types import OK, UNKNOWN
+from sensorfault.types import FAULT, OK, UNKNOWN
 
 RATES, ANGLES = ("tachometer1.rate", "tachometer2.rate"), ("encoder1.angle", "encoder2.angle")
 LEARNING = Learning(plan=Plan(epochs=20, rate=1e-2))
@@ -60,6 +60,25 @@ def test_in_groups_what_one_network_foretells_is_nothing_to_the_other() -> None:
     assert (alone.channel[1:, :4] == OK).mean() > 0.99
     lied = detect(model, shifted("encoder1.angle", 44.0, 0.3))
     assert next((event.sensor, event.start_s) for event in lied.events) == ("encoder1", pytest.approx(44.0))
+
+
+def test_against_what_it_has_lately_been_a_shaking_arm_is_no_fault() -> None:
+    """Five times the noise for a while: over fixed limits all the time, over those that follow only to begin with."""
+    shaken = log().value.copy()
+    rows = (log().time >= 44.0) & (log().time < 54.0)
+    shaken[np.ix_(rows, range(4))] += 0.015 * np.random.default_rng(0).standard_normal((rows.sum(), 4))
+    follows = build(log().between(end_s=HEALTHY_S), 0, SILENT, Setting(LEARNING, lately=20))
+    assert follows.tests[0] == ("absolute, relative", "tachometer1.rate")
+    later = log().time[rows] >= 47.0
+    alarms = [
+        (detect(model, replace(log(), value=shaken)).channel[rows][later] == FAULT).any(axis=1).mean()
+        for model in (follows, fitted())
+    ]
+    assert alarms[0] < 0.1 < 0.3 < alarms[1]
+    lied = detect(follows, shifted("encoder1.angle", 44.0, 0.3))
+    assert next((event.sensor, event.start_s) for event in lied.events) == ("encoder1", pytest.approx(44.0))
+    with pytest.raises(ValueError, match="in units of"):
+        Setting(slope=True, lately=20)
 
 
 def test_from_scratch_it_is_unknown_until_it_has_learned() -> None:

@@ -204,7 +204,7 @@ def test_runs_are_for_one_thing_only() -> None:
     parts = Runs.of(swinging(), 0)
     names = [{log.name for log in group} for group in (parts.learned, parts.other, parts.judged)]
     assert sum(len(group) for group in names) == len(set.union(*names)) == 8
-    assert [len(group) for group in names] == [2, 2, 4]
+    assert [len(group) for group in names] == [4, 2, 2]
     parts = Runs.of_another_motion(swinging())
     assert [log.name for log in parts.judged] == ["measurement 6", "measurement 7"]
     assert {log.name for log in (*parts.learned, *parts.other)} == {f"measurement {i}" for i in range(6)}
@@ -259,13 +259,15 @@ def test_a_miss_is_unknown_all_the_while() -> None:
 # What the issue asks for.
 
 
-def test_both_drifts_are_found_at_once_by_the_network() -> None:
+@pytest.mark.parametrize("variant", ["", SCRATCH])
+def test_both_drifts_are_found_at_once_by_the_network(variant: str) -> None:
     """Must, as printed: 95 % found at 51 or 52, 95 % without an early alarm; one-step error of the rates 0.007 rad/s
-    with noise, 0.003 without.
+    with noise, 0.003 without. Taught beforehand, and with random weights to begin with.
     """
     limit = theta(AS_PRINTED)
     paths = {"tachometer1.rate": 0, "tachometer2.rate": 1, "encoder1.angle": 2, "encoder2.angle": 3}
-    network, *_ = of_two_links(AS_PRINTED.constants, {path: float(limit[c]) for path, c in paths.items()})
+    rivals = of_two_links(AS_PRINTED.constants, {path: float(limit[c]) for path, c in paths.items()})
+    network = next(rival for rival in rivals if (rival.method, rival.variant) == (NETWORK, variant))
     watched = replace(Watched.of(network, AS_PRINTED, 0), seeds=range(200))
     model = with_limits(watched.model, limit)
     told = watch(model, watched.drifting({"tachometer2": 2 * float(limit[1]), "encoder2": 2 * float(limit[3])}))
@@ -277,15 +279,18 @@ def test_both_drifts_are_found_at_once_by_the_network() -> None:
 
 @pytest.mark.real
 def test_isolation_on_the_real_arm(real_data: Path) -> None:
-    """Must: right in 95 % of shorts, biases and jams of five one-step errors, with one healthy sample in a hundred with
-    anybody over his limit."""
+    """Must: right in 95 % of shorts, of biases and of jams of five one-step errors, with one healthy sample in a
+    hundred with anybody over his limit.
+    """
     parts = Runs.of(runs(real_data / "arm" / "schunk_arm.tar.gz"), 0)
     network, *_ = of_six_joints(APART)
     own = Calibrated.of(network.build(joined(parts.learned), 0), stretches(parts.other))
-    faults = trials(stretches(parts.judged), own.unit, 4, 0, quick=True)
+    faults = trials(stretches(parts.judged), own.unit, 8, 0, quick=True)
     faults = [trial for trial in faults if trial.kind in ("short", "bias", "jam")]
+    kinds = np.array([trial.kind for trial in faults])
     told = watch(with_limits(own.deaf, own.limits["far1e-2"]), [trial.log for trial in faults])
     became = isolated(told, np.array([trial.column for trial in faults]))
     assert became.calm.mean() > 0.5
-    assert became.right[became.calm].mean() >= 0.95
+    right = {kind: became.right[became.calm & (kinds == kind)].mean() for kind in ("short", "bias", "jam")}
+    assert min(right.values()) >= 0.95, right
     assert KALMAN not in {rival.method for rival in of_six_joints(APART)}

@@ -12,6 +12,7 @@ from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.statistic.absolute import Absolute
+from sensorfault.monitor.statistic.relative import Relative
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.sigma import Sigma
 from sensorfault.replay import replay_log
@@ -22,13 +23,22 @@ PER_HOUR = 1.0  # false alarms promised, of all channels together
 BLOCK = 50  # ticks: alarms in one block count once
 HORIZON = 10  # ticks for which a stand-in is believed
 
+Statistic = Absolute | Relative
+SIZE: Statistic = Absolute()
 
-def monitor(log: Log, residual: Stage[Any, Any, Any, Any], threshold: Fixed | Sigma, horizon: int = HORIZON) -> Monitor:
+
+def monitor(
+    log: Log,
+    residual: Stage[Any, Any, Any, Any],
+    threshold: Fixed | Sigma,
+    horizon: int = HORIZON,
+    statistic: Statistic = SIZE,
+) -> Monitor:
     """One limit a channel; all that are over theirs are named at once, and out for that sample."""
     channels = len(log.channels)
     return Monitor(
         residual=residual,
-        branches=(Branch(Absolute(), threshold),),
+        branches=(Branch(statistic, threshold),),
         decision=Exceed(),
         recovery=Rebuild(jnp.asarray(horizon * log.period_s), jnp.asarray(log.period_s / 2), channels),
         hold_s=jnp.asarray(hold_s(log)),
@@ -36,16 +46,18 @@ def monitor(log: Log, residual: Stage[Any, Any, Any, Any], threshold: Fixed | Si
     )
 
 
-def healthy(log: Log, residual: Stage[Any, Any, Any, Any]) -> tuple[Float[np.ndarray, " C"], Float[np.ndarray, " C"]]:
+def healthy(
+    log: Log, residual: Stage[Any, Any, Any, Any], statistic: Statistic = SIZE
+) -> tuple[Float[np.ndarray, " C"], Float[np.ndarray, " C"]]:
     """Limits that a healthy log passes PER_HOUR times an hour in all, +inf for a channel without a residual; and the
     root mean square of each channel's residual [SI], 1 where there is none.
     """
     channels = len(log.channels)
-    tape = replay_log(monitor(log, residual, Fixed(jnp.full(channels, jnp.inf))), log)
-    score = np.asarray(tape.scores[0])
-    tested = np.isfinite(score)
-    square = np.where(tested, score**2, 0.0).sum(axis=0) / np.maximum(tested.sum(axis=0), 1)
-    spread = np.where(tested.any(axis=0), np.sqrt(square), 1.0)
+    deaf = monitor(log, residual, Fixed(jnp.full(channels, jnp.inf)), statistic=statistic)
+    tape = replay_log(deaf, log)
+    score, valid = np.asarray(tape.scores[0]), np.asarray(tape.valid)
+    square = np.where(valid, np.asarray(tape.residual) ** 2, 0.0).sum(axis=0) / np.maximum(valid.sum(axis=0), 1)
+    spread = np.where(valid.any(axis=0), np.sqrt(square), 1.0)
     return tail_limit(score, log.period_s, PER_HOUR / channels, BLOCK * log.period_s), spread
 
 
@@ -57,13 +69,15 @@ def model(
     spread: Float[np.ndarray, " C"],
     told: dict[str, Any],
     horizon: int = HORIZON,
+    statistic: Statistic = SIZE,
 ) -> Model:
     """The model with these limits; a channel whose limit is infinite is not watched."""
     paths = [channel.path for channel in log.channels]
-    tests = tuple(("absolute", path) for path in paths)
+    test = "absolute" if isinstance(statistic, Absolute) else "absolute, relative"
+    tests = tuple((test, path) for path in paths)
     limits = np.asarray(threshold.limit() if isinstance(threshold, Sigma) else threshold.limit)
     watched = tuple(np.isfinite(limits).tolist())
     finite = {path: float(limit) for path, limit in zip(paths, limits, strict=True) if np.isfinite(limit)}
     told = {"training_log": log.name, "training_s": log.duration_s, "limits": finite, **told}
-    own = monitor(log, residual, threshold, horizon)
+    own = monitor(log, residual, threshold, horizon, statistic)
     return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(spread.tolist()), told)

@@ -14,12 +14,15 @@ from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.monitor.residual.several import Several
+from sensorfault.monitor.statistic.relative import Relative
+from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.sigma import Sigma
 from sensorfault.training.online import Learning, learner, noise, steps, untaught
 from sensorfault.training.session import Session
 
 NAME = "online-network"
 OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
+ROUGHEST = 8.0  # times the healthy root mean square: worse is no motion that is hard to foretell
 TAUGHT = 0.7  # of the healthy log; the limits come from the rest
 
 
@@ -31,6 +34,10 @@ class Setting:
     Limits are Δ + 3σ: with `slope`, as printed, Δ is the largest step of the healthy output from one tick to the next,
     else the tail of its healthy residual decides. `theta`: the whole limit of some paths [SI], whatever their Δ. A
     stand-in is believed for `horizon` ticks, then the channel is unknown until it has been measured anew.
+
+    With `lately` a residual is judged by its own root mean square over about so many healthy ticks, never taken for
+    less than that of the healthy log, and limits are in its units: a motion that is hard to foretell is no fault, and
+    an easy one hides none. Slope and theta, which are in those of the sensor, do not go with it.
     """
 
     learning: Learning = field(default_factory=Learning)
@@ -38,6 +45,11 @@ class Setting:
     slope: bool = False
     theta: Mapping[str, float] = field(default_factory=dict)
     horizon: int = each.HORIZON
+    lately: int = 0
+
+    def __post_init__(self) -> None:
+        if self.lately and (self.slope or self.theta):
+            raise ValueError("limits in units of the lately seen residual cannot be given in those of the sensor.")
 
 
 def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
@@ -56,18 +68,24 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
         own = replace(session, checkpoint=None)  # one file cannot hold several trainings
         networks.append(learner(log.between(end_s=cut), columns, driven, setting.learning, seed, own))
     session.tell("measuring what they leave")
-    limit, spread = each.healthy(log.between(cut), _side_by_side(networks, log))
-    threshold = _threshold(training, limit, setting)
+    rest = log.between(cut)
+    limit, spread = each.healthy(rest, _side_by_side(networks, log))
+    sigma = _threshold(training, limit, setting)
+    threshold: Fixed | Sigma = sigma
+    statistic = each.SIZE
+    if setting.lately:
+        statistic = _relative(setting.lately, spread)
+        limit, _ = each.healthy(rest, _side_by_side(networks, log), statistic)
+        threshold = Fixed(jnp.asarray(limit))
     networks = [replace(one, cov=jnp.diag(jnp.asarray(spread**2))) for one in networks]
     if setting.learning.scratch:
-        limits = np.asarray(threshold.limit())
-        networks = [untaught(one, limits, setting.learning.warm, seed) for one in networks]
+        networks = [untaught(one, np.asarray(sigma.limit()), setting.learning.warm, seed) for one in networks]
     told = {
         "rows": int(training.rows.sum()),
         "not_watched": training.reasons,
         "inputs": [log.channels[i].path for i in driven],
     }
-    return each.model(NAME, log, _side_by_side(networks, log), threshold, spread, told, setting.horizon)
+    return each.model(NAME, log, _side_by_side(networks, log), threshold, spread, told, setting.horizon, statistic)
 
 
 def _driven(log: Log) -> tuple[int, ...]:
@@ -107,6 +125,12 @@ def _threshold(training: Training, limit: Float[np.ndarray, " C"], setting: Sett
     for path, theta in setting.theta.items():
         delta[log.index(path)] = theta - 3 * sigma[log.index(path)]
     return Sigma(jnp.asarray(delta / log.period_s), jnp.asarray(sigma), jnp.asarray(log.period_s))
+
+
+def _relative(lately: int, spread: Float[np.ndarray, " C"]) -> Relative:
+    """Each residual by its own root mean square over so many ticks."""
+    lowest = jnp.asarray(spread)
+    return Relative(each.SIZE, jnp.asarray(float(lately)), lowest, ROUGHEST * lowest)
 
 
 def _side_by_side(networks: Sequence[OnlineNetwork], log: Log) -> OnlineNetwork | Several:

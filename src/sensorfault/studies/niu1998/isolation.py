@@ -35,9 +35,9 @@ class Runs:
 
     @classmethod
     def of(cls, runs: Sequence[Log], seed: int) -> "Runs":
-        """A quarter, a quarter and a half, each of all motions; those to be learned in an order by chance."""
-        order = np.random.default_rng(seed).permutation(len(runs[::4]))
-        return cls(tuple(runs[4 * i] for i in order), tuple(runs[2::4]), tuple(runs[1::2]))
+        """A half, a quarter and a quarter, each of all motions; those to be learned in an order by chance."""
+        order = np.random.default_rng(seed).permutation(len(runs[::2]))
+        return cls(tuple(runs[2 * i] for i in order), tuple(runs[1::4]), tuple(runs[3::4]))
 
     @classmethod
     def of_another_motion(cls, runs: Sequence[Log]) -> "Runs":
@@ -140,6 +140,12 @@ def missed(told: Told, column: Int[np.ndarray, " N"]) -> Bool[np.ndarray, " N"]:
     return np.asarray(unknown.all(axis=1) & ~told.fault[:, ONSET : ONSET + LASTING].any(axis=(1, 2)))
 
 
+def one_step_error(told: Told) -> Float[np.ndarray, "12"]:
+    """Root mean square of each sensor's residual where it was tested [SI]."""
+    residual = np.where(told.tested, told.residual, np.nan)[:, :, :SENSORS]
+    return np.asarray(np.sqrt(np.nanmean(residual**2, axis=(0, 1))))
+
+
 @dataclass(frozen=True)
 class Calibrated:
     """A model on healthy stretches that it does not know: `unit`, each channel's one-step error (root mean square)
@@ -155,9 +161,9 @@ class Calibrated:
         """From scores without consequences."""
         many = len(model.channels)
         deaf = with_limits(model, np.full(many, np.inf))
-        score = watch(deaf, healthy).score[:, :, :SENSORS]
-        unit = np.ones(many)
-        unit[:SENSORS] = np.sqrt(np.nanmean(score**2, axis=(0, 1)))
+        told = watch(deaf, healthy)
+        score, unit = told.score[:, :, :SENSORS], np.ones(many)
+        unit[:SENSORS] = one_step_error(told)
         limits = {}
         for name, rate in RATES.items():
             limits[name] = np.full(many, np.inf)

@@ -20,6 +20,7 @@ from sensorfault.studies.niu1998.isolation import (
     Trial,
     isolated,
     missed,
+    one_step_error,
     stretches,
     trials,
 )
@@ -63,13 +64,15 @@ def joints(effort: Effort) -> Joints:
     return told
 
 
-def _judge(told: Joints, words: str, parts: Runs, seed: int, quick: bool) -> None:
+def _judge(told: Joints, split: str, parts: Runs, seed: int, quick: bool) -> None:
     other, judged = stretches(parts.other), stretches(parts.judged)
     faults: list[Trial] = []
-    for rival in of_six_joints(APART):
+    first, *others = of_six_joints(APART)
+    for rival in (first, *others):
+        words = f"{split} {rival.variant}".strip()
         own = Calibrated.of(rival.build(joined(parts.learned), seed), other)
-        if rival.method == NETWORK:
-            faults = trials(judged, own.unit, QUICK_EACH if quick else EACH, seed, quick or words == NEW)
+        if rival == first:
+            faults = trials(judged, own.unit, QUICK_EACH if quick else EACH, seed, quick or split == NEW)
         _quiet(told, words, rival, own, judged)
         for rate, limit in own.limits.items():
             condition = f"{rate} {words}".strip()
@@ -78,8 +81,8 @@ def _judge(told: Joints, words: str, parts: Runs, seed: int, quick: bool) -> Non
 
 def _quiet(told: Joints, words: str, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
     """One-step errors, the median over six sensors; and how often a score passes its limit where nothing lies."""
-    score = watch(own.deaf, healthy).score
-    error = np.sqrt(np.nanmean(score[:, :, :SENSORS] ** 2, axis=(0, 1)))
+    seen = watch(own.deaf, healthy)
+    score, error = seen.score, one_step_error(seen)
     for group in ("tachometers", "encoders"):
         told.real.add(f"{group} {words}".strip(), rival.method, {"rms": float(np.median(error[GROUPS[group]]))})
     for rate, limit in own.limits.items():

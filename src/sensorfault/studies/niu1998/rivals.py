@@ -1,7 +1,7 @@
 """Who is compared: the paper's network in three variants, what is plainer, and a filter that knows the arm."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from sensorfault.logs.table import Log
@@ -18,13 +18,13 @@ from sensorfault.training.session import SILENT
 NETWORK, KALMAN = "online-network", "arm-kalman"
 PLAIN = ("persistence", "linear-extrapolation")
 SCRATCH, AS_PRINTED = "scratch", "scratch absolute"
-FAST = 0.3  # learning rate of what knows nothing and has 50 samples
+FIXED = "fixed"  # limits, as printed, that know nothing of how well the network has lately foretold
 VARIANTS = {  # of the network, by what a row's condition calls it
     "": Learning(),
-    SCRATCH: Learning(scratch=True, rate=FAST),
-    AS_PRINTED: Learning(scratch=True, rate=FAST, absolute=True),
+    SCRATCH: Learning(scratch=True),
+    AS_PRINTED: Learning(scratch=True, rate=0.3, iterations=10, absolute=True),  # each sample to convergence
 }
-DEEP = Learning(hidden=20, delays=(4, 1))  # for six joints
+DEEP = Taught(Learning(hidden=10, delays=(3, 1)), lately=20, horizon=1)  # for six joints
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,12 @@ def of_two_links(arm: Constants, theta: Mapping[str, float]) -> tuple[Rival, ...
 
 def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
     """On the real arm, of which there is no model; `groups`: paths that are foretold apart from the others."""
-    setting = Taught(DEEP, groups=groups)
-    return (Rival(NETWORK, "", partial(_network, setting=setting)), *_plain())
+    settings = {"": DEEP, FIXED: replace(DEEP, lately=0)}
+    networks = (
+        Rival(NETWORK, variant, partial(_network, setting=replace(setting, groups=groups)))
+        for variant, setting in settings.items()
+    )
+    return (*networks, *_plain())
 
 
 def _network(log: Log, seed: int, setting: Taught) -> Model:
