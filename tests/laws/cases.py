@@ -17,14 +17,19 @@ from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods import (
     ar_predictor,
     bp_autoencoder,
+    cusum,
     kinematic_observer,
     lstm_displacement,
     lstm_predictor,
+    mean_pair,
     mlp_predictor,
     multistep_observer,
     online_network,
+    ramp_glr,
+    slope,
 )
 from sensorfault.methods.catalog import METHODS
+from sensorfault.methods.drifting import drift
 from sensorfault.methods.online_network import NAME as NETWORK
 from sensorfault.methods.online_network import Setting
 from sensorfault.methods.predicted import READMIT_S, REBUILD_S
@@ -34,6 +39,7 @@ from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
 from sensorfault.simulation.arm import PERIOD_S, run
+from sensorfault.simulation.flapping_wing import fly
 from sensorfault.simulation.road import drive
 from sensorfault.training.gradient import Plan
 from sensorfault.training.multistep import Schedule
@@ -58,6 +64,7 @@ def joint(name: str) -> Case:
     return Case(name, monitor, rows, lie, back_s, permuted=functools.partial(_permuted, monitor))
 
 
+DRIFTS = {test.name: test for test in (slope.TEST, mean_pair.TEST, ramp_glr.TEST, cusum.TEST)}
 BACK_S = 3.0  # the bicycle's filter begins anew
 PLAN = Plan(epochs=3, batch=256)
 SMALL = {"bp-autoencoder": functools.partial(bp_autoencoder.build, plan=Plan(epochs=100, batch=256, rate=0.01))}
@@ -172,7 +179,7 @@ def two_joints(rows: int) -> Log:
 OBSERVERS = {
     "multistep-observer": functools.partial(
         multistep_observer.build,
-        setting=multistep_observer.Setting(steps=5, horizon_s=3.0, schedule=Schedule(epochs=20, rate=1e-2)),
+        setting=multistep_observer.Setting(steps=(1, 5), horizon_s=3.0, schedule=Schedule(epochs=20, rate=1e-2)),
     ),
     "kinematic-observer": functools.partial(
         kinematic_observer.build, setting=kinematic_observer.Setting((0.2, 1.0, 2.4), horizon_s=3.0)
@@ -212,6 +219,20 @@ def heights() -> Case:
         named=(flown.HEIGHT,),
         lost={flown.HEIGHT: every},
     )
+
+
+def drifting(name: str) -> Case:
+    """A test for a slow drift, with a window of 20 s, on two heights at 1 Hz; without the barometer there is none.
+
+    A window holds a fault for its length after the end, and a sum comes down again as slowly.
+    """
+    log = fly(1000.0, seed=5, beat_hz=0.0, imu_hz=1.0, gnss_hz=1.0, barometer_hz=1.0).log
+    log = log.select(["gnss.altitude", "barometer.altitude"])
+    setting = replace(DRIFTS[name].setting, window_s=20.0, margin=1.3)
+    monitor = drift(log.between(end_s=600.0), replace(DRIFTS[name], setting=setting)).monitor
+    part = log.between(600.0)
+    rows = samples(part.time, part.value, part.fresh)
+    return Case(name, monitor, rows, lie=np.array([500.0, 0.0]), back_s=60.0, named=(0,), lost={1: (0,)})
 
 
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
@@ -254,8 +275,17 @@ def _conditioning(residual: Conditioning, order: np.ndarray) -> Conditioning:
 
 ZOO = {case.name: case for case in zoo()}
 MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
+DRIFTING = {name: functools.partial(drifting, name) for name in DRIFTS}
 HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS} | {"height-agreement": heights}
-ALONE = {"motion-deficit": deficit, "car": whole_car, NETWORK: arm, "arm-kalman": two_links, **MOTION, **HEIGHT}
+ALONE = {
+    "motion-deficit": deficit,
+    "car": whole_car,
+    NETWORK: arm,
+    "arm-kalman": two_links,
+    **MOTION,
+    **HEIGHT,
+    **DRIFTING,
+}
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
 

@@ -79,6 +79,18 @@ def test_spans_that_the_log_cannot_show_are_left_out() -> None:
     assert [test for test, _ in model.tests][:2] == ["roll-out over 0.2 s", "roll-out over 1 s"]
 
 
+def test_a_bank_of_networks_is_one_network() -> None:
+    """Given in seconds; each member has its own test and limit."""
+    setting = multistep_observer.Setting(spans_s=(2.4, 0.2), schedule=HURRIED)
+    model = multistep_observer.build(log().between(end_s=LEARN_S), 0, SILENT, setting)
+    assert model.summary["steps"] == [1, 12]
+    assert [test for test, _ in model.tests] == ["roll-out over 0.2 s", "roll-out over 2.4 s"]
+    unseen = log().between(LEARN_S)
+    one, many = detect(network(), unseen).traces, detect(model, unseen).traces
+    np.testing.assert_allclose(many[1].score, one[0].score, rtol=1e-9)
+    assert np.nanmean(many[0].limit) < np.nanmean(many[1].limit)
+
+
 def test_heights_on_a_faster_clock_are_the_same_heights() -> None:
     fast = flown.flight(120.0, hz=25.0)
     fixes = fast.without(np.flatnonzero(~fast.fresh[:, flown.HEIGHT]))
@@ -133,5 +145,7 @@ def test_what_they_cannot_run_on() -> None:
     assert "take one of receiver, inertial, barometric" in sentence(lambda: build(whole, 0, SILENT, odd))
     minute = kinematic_observer.Setting(spans_s=(60.0,))
     assert "0 unbroken runs of 300 steps" in sentence(lambda: build(flown.flight(50.0), 0, SILENT, minute))
+    lone = multistep_observer.Setting(spans_s=(100.0,), schedule=HURRIED)
+    assert "no unbroken run of 500 steps" in sentence(lambda: multistep_observer.build(whole, 0, SILENT, lone))
     short = whole.between(end_s=14.0)
     assert "measurements of gnss.altitude" in sentence(lambda: multistep_observer.build(short, 0, SILENT))

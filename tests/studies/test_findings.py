@@ -209,6 +209,14 @@ def test_the_page_has_tables_figures_and_remarks() -> None:
     assert "plotly.js v" in seen.scripts[1][:100]
 
 
+def test_a_figure_stands_with_the_experiment_whose_whole_name_it_bears() -> None:
+    rows = tuple(replace(ONE, experiment=code) for code in ("D", "D-slow"))
+    figures = tuple(Figure(name, f"Figure {name}", "", {"data": [], "layout": {}}) for name in ("d-slow_b", "d_a"))
+    text = page(replace(STUDIES["multistep"]), Findings(rows, figures), "")
+    places = [text.index(part) for part in ("Figure d_a", "<h2>D-slow", "Figure d-slow_b")]
+    assert places == sorted(places)
+
+
 def test_the_page_asks_nobody_for_anything() -> None:
     text = page(STUDIES["min2021"], Findings((ONE,)), "")
     assert "default-src 'none'" in text

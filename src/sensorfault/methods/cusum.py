@@ -2,12 +2,11 @@
 
 import jax.numpy as jnp
 
-from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
 from sensorfault.monitor.statistic.cusum import Cusum
 
 NAME = "cusum"
 ALLOWANCE = 0.5  # an offset of one standard deviation is to be found
-SETTING = Setting(memory_s=120.0)
 
 
 def statistic(setting: Setting, channels: int) -> Statistic:
@@ -15,10 +14,9 @@ def statistic(setting: Setting, channels: int) -> Statistic:
     return Cusum(jnp.full(channels, ALLOWANCE), jnp.full(channels, jnp.inf), setting.gap_s)
 
 
+TEST = DriftTest(NAME, statistic, Setting(memory_s=120.0))
 RECIPE = recipe(
-    NAME,
+    TEST,
     "Cumulative sum of receiver minus barometer, whose offset follows over two minutes",
     "Page 1954; for the faults of Wang S. et al.",
-    statistic,
-    SETTING,
 )

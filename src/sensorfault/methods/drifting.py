@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -29,7 +28,7 @@ from sensorfault.vehicles.fixed_wing import roles
 GAP_BEATS = 10.0  # without the receiver or the barometer for so long, a window begins anew
 REBUILD_S = 300.0  # what the barometer says stands in for so long: its offset wanders over minutes
 LEAST_WINDOWS = 1.5  # that a training flight must hold
-CEILING = 2.0  # times the limit: a sum goes no higher
+CEILING = 1.25  # times the limit: a sum goes no higher
 PRESUMES = "presumes the barometer healthy"
 PROMISE = "none; the limit is a tenth above the largest score of the training flight"
 
@@ -63,49 +62,48 @@ class Setting:
 
 
 DEFAULT = Setting()
-Test = Callable[[Setting, int], Statistic]  # of so many channels
 
 
-def recipe(name: str, title: str, source: str, test: Test, setting: Setting = DEFAULT) -> Recipe:
+@dataclass(frozen=True)
+class DriftTest:
+    """A test by name: its statistic of so many channels, and how it is set."""
+
+    name: str
+    statistic: Callable[[Setting, int], Statistic]
+    setting: Setting = DEFAULT
+
+
+def recipe(test: DriftTest, title: str, source: str) -> Recipe:
     """The recipe of a test."""
 
     def build(log: Log, seed: int, session: Session) -> Model:
         session.tell("learning how two heights differ when healthy")
-        return drift(name, log, test, setting)
+        return drift(log, test)
 
-    return Recipe(name, f"{title}; {PRESUMES}", source, PROMISE, build)
+    return Recipe(test.name, f"{title}; {PRESUMES}", source, PROMISE, build)
 
 
-def drift(name: str, log: Log, test: Test, setting: Setting) -> Model:
-    """Fit on a healthy flight: the difference of its two heights, and the limit of `test` of it.
+def drift(log: Log, test: DriftTest) -> Model:
+    """Fit on a healthy flight: the difference of its two heights, and the limit of the test of it.
 
     Raises:
         LogError: not two heights, or too short a flight.
     """
-    part = difference(name, log, setting)
-    statistic = test(setting, len(log.channels))
-    deaf = monitor(log, part, statistic, Fixed(jnp.full(len(log.channels), jnp.inf)), setting)
-    heard, limit = limited(deaf, log, part.measured, setting)
-    if not np.isfinite(limit):
+    setting, channels = test.setting, len(log.channels)
+    part = difference(test.name, log, setting)
+    statistic = test.statistic(setting, channels)
+    deaf = monitor(log, part, statistic, Fixed(jnp.full(channels, jnp.inf)), setting)
+    score = score_tape(deaf, log)[0][:, part.measured]
+    if not np.isfinite(score).any():
         raise LogError(
-            f"{log.name} is never watched for {setting.window_s:g} s without a break, over which {name} looks back; "
-            "give it a longer flight, or one with fewer gaps."
+            f"{log.name} is never watched for {setting.window_s:g} s without a break, over which {test.name} looks "
+            "back; give it a longer flight, or one with fewer gaps."
         )
-    return _model(name, log, heard, part, limit, setting)
-
-
-def limited(deaf: Monitor, log: Log, column: int, setting: Setting) -> tuple[Monitor, float]:
-    """The monitor with the limit of a healthy log, and that limit; it stays deaf where nothing was tested."""
-    score = score_tape(deaf, log)[0][:, column]
-    limit = setting.margin * float(np.nanmax(score, initial=-np.inf))
-    limit = limit if np.isfinite(limit) else np.inf
-    statistic = deaf.branches[0].statistic
+    limit = setting.margin * float(np.nanmax(score))
     if isinstance(statistic, Cusum):
         statistic = replace(statistic, ceiling=jnp.full_like(statistic.ceiling, CEILING * limit))
-    mine = np.arange(len(log.channels)) == column
-    parts = (statistic, jnp.asarray(np.where(mine, limit, np.inf)))
-    heard: Monitor = eqx.tree_at(lambda m: (m.branches[0].statistic, m.branches[0].threshold.limit), deaf, parts)
-    return heard, limit
+    limits = Fixed(jnp.asarray(np.where(np.arange(channels) == part.measured, limit, np.inf)))
+    return _model(test.name, log, monitor(log, part, statistic, limits, setting), part, limit, setting)
 
 
 def difference(name: str, log: Log, setting: Setting) -> Difference:

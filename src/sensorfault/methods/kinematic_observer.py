@@ -88,7 +88,7 @@ def _steps(fixes: Fixes, setting: Setting) -> tuple[int, ...]:
     Raises:
         LogError: not even the shortest can be shown.
     """
-    wanted = sorted({max(round(span / fixes.period_s), 1) for span in setting.spans_s})
+    wanted = observed.in_steps(setting.spans_s, fixes)
     steps = tuple(n for n in wanted if len(fixes.windows(n)) >= LEAST_WINDOWS)
     if not steps:
         raise LogError(

@@ -2,7 +2,7 @@
 
 import jax.numpy as jnp
 
-from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
 from sensorfault.monitor.statistic.mean_pair import MeanPair
 
 NAME = "mean-pair"
@@ -14,9 +14,9 @@ def statistic(setting: Setting, channels: int) -> Statistic:
     return setting.windowed(MeanPair(jnp.asarray(SHARE)), channels)
 
 
+TEST = DriftTest(NAME, statistic)
 RECIPE = recipe(
-    NAME,
+    TEST,
     "Receiver minus barometer: the newest third of 130 s against the oldest",
     "EXPERIMENTS, slow drift; for the faults of Wang S. et al.",
-    statistic,
 )

@@ -16,6 +16,7 @@ from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.threshold.adaptive import Adaptive
 from sensorfault.replay import replay_log
+from sensorfault.training.fixes import Fixes
 from sensorfault.training.height_kalman import fit_height_kalman
 from sensorfault.training.limits import tail_limit
 from sensorfault.training.multistep import Schedule, train_steps
@@ -31,11 +32,13 @@ LOUD = 1e9
 
 @dataclass(frozen=True)
 class Setting:
-    """`steps` N; 12 is the paper's best. `horizon_s`: a stand-in is believed for so long. `printed`: a = b = 1; by
-    default both are what the promise asks for.
+    """`steps` N, each a member of the bank; 12 is the paper's best. `spans_s`: instead, in seconds. The network is
+    trained over the longest. `horizon_s`: a stand-in is believed for so long. `printed`: a = b = 1; by default both are
+    what the promise asks for.
     """
 
-    steps: int = 12
+    steps: tuple[int, ...] = (12,)
+    spans_s: tuple[float, ...] = ()
     horizon_s: float = 10.0
     printed: bool = False
     schedule: Schedule = field(default_factory=Schedule)
@@ -47,36 +50,65 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     Raises:
         LogError: no height, nothing that foretells it, or too few measurements that follow each other.
     """
-    heights = Heights.of(NAME, log)
-    climb = heights.roles.vertical if heights.roles.vertical is not None else heights.roles.inertial
-    columns = tuple(i for i in (climb, *heights.roles.inputs) if i is not None)
-    if not columns:
-        raise LogError(
-            f"{log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the height; "
-            "name the columns in vehicle.toml, or take another method."
-        )
-    cut = log.time[0] + TAUGHT * log.duration_s
-    session.tell(f"teaching a network over {setting.steps} steps")
-    taught = train_steps(heights.fixes(columns, end_s=cut), (setting.steps,), (seed,), setting.schedule)
-    (network,), unseen = taught.nets[0], heights.fixes(columns, cut)
-    watched = observed.observer(network, unseen, (setting.steps,), heights.column)
+    heights, cut = Heights.of(NAME, log), log.time[0] + TAUGHT * log.duration_s
+    columns = _columns(heights)
+    learn, unseen = heights.fixes(columns, end_s=cut), heights.fixes(columns, cut)
+    steps = _steps(learn, unseen, setting)
+    session.tell(f"teaching a network over {max(steps)} steps")
+    taught = train_steps(learn, (max(steps),), (seed,), setting.schedule)
+    (network,) = taught.nets[0]
     session.tell("measuring what it leaves")
+    watched = observed.observer(network, unseen, steps, heights.column)
     companion = fit_height_kalman(log, heights.column, heights.roles)
     mine = np.arange(len(log.channels)) == heights.column
     residual = Several((watched, companion), jnp.asarray(np.stack([mine, mine & False])))
     threshold = Adaptive(
-        a=jnp.ones(1),
-        b=jnp.ones(1),
-        typical=jnp.asarray([np.sqrt(np.mean(errors(network, unseen, (setting.steps,)) ** 2))]),
+        a=jnp.ones(len(steps)),
+        b=jnp.ones(len(steps)),
+        typical=jnp.asarray(np.sqrt(np.mean(errors(network, unseen, steps) ** 2, axis=1))),
         chi_square=jnp.asarray(CHI_SQUARE),
         part=1,
         column=heights.column,
     )
     if not setting.printed:
         threshold = _calibrated(heights, residual, threshold, setting, unseen.period_s, cut)
-    told = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), "a": float(threshold.a[0]), "b": float(threshold.b[0])}
+    weights = {"a": np.asarray(threshold.a).tolist(), "b": np.asarray(threshold.b).tolist()}
+    told = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), **weights}
     watching = observed.monitor(log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s)
     return observed.model(NAME, heights, watching, watched, unseen.period_s, told)
+
+
+def _columns(heights: Heights) -> tuple[int, ...]:
+    """What the network is told besides the height.
+
+    Raises:
+        LogError: nothing.
+    """
+    found = heights.roles
+    climb = found.vertical if found.vertical is not None else found.inertial
+    columns = tuple(i for i in (climb, *found.inputs) if i is not None)
+    if not columns:
+        raise LogError(
+            f"{heights.log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the "
+            "height; name the columns in vehicle.toml, or take another method."
+        )
+    return columns
+
+
+def _steps(learn: Fixes, unseen: Fixes, setting: Setting) -> tuple[int, ...]:
+    """The bank's numbers of steps.
+
+    Raises:
+        LogError: one of them cannot be judged on what is not learned from.
+    """
+    steps = observed.in_steps(setting.spans_s, learn) if setting.spans_s else setting.steps
+    for n in steps:
+        if not len(unseen.windows(n)):
+            raise LogError(
+                f"{learn.name} has no unbroken run of {n} steps of its height in its last part, on which {NAME} sets "
+                "its limits; give it more data, or take fewer steps."
+            )
+    return steps
 
 
 def _statistic(heights: Heights) -> Of:
@@ -92,9 +124,7 @@ def _calibrated(
     watching = observed.monitor(log, residual, _statistic(heights), loud, setting.horizon_s, period_s)
     tape = replay_log(watching, log)
     ratio = np.asarray(tape.scores[0]) / np.asarray(tape.limits[0]) * LOUD
-    factor = tail_limit(ratio[log.time >= cut], log.period_s, PER_HOUR, BLOCK_S)
-    if not np.isfinite(factor).all():
-        raise LogError(f"{log.name} has no unbroken run of {setting.steps} steps of its height to set limits on.")
+    factor = tail_limit(ratio[log.time >= cut], log.period_s, PER_HOUR / ratio.shape[1], BLOCK_S)
     return replace(threshold, a=jnp.asarray(factor), b=jnp.asarray(factor))
 
 

@@ -1,6 +1,6 @@
 """What both observers of a height share: which height, how far a roll-out of it errs, and the monitor around it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -124,6 +124,11 @@ def model(
         tuple(sigma.tolist()),
         summary,
     )
+
+
+def in_steps(spans_s: Sequence[float], fixes: Fixes) -> tuple[int, ...]:
+    """Spans of time in steps from one height to the next, one at least; rising."""
+    return tuple(sorted({max(round(span / fixes.period_s), 1) for span in spans_s}))
 
 
 def silent(tests: int) -> Float[Array, " K"]:

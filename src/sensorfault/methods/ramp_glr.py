@@ -1,6 +1,6 @@
 """A slow drift of a height, by the likelihood ratio of a ramp in its difference to the barometer."""
 
-from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
 from sensorfault.monitor.statistic.ramp_glr import RampGlr
 
 NAME = "ramp-glr"
@@ -11,9 +11,9 @@ def statistic(setting: Setting, channels: int) -> Statistic:
     return setting.windowed(RampGlr(), channels)
 
 
+TEST = DriftTest(NAME, statistic)
 RECIPE = recipe(
-    NAME,
+    TEST,
     "Largest likelihood ratio of a ramp in receiver minus barometer, over all onsets in 130 s",
     "Willsky & Jones 1976; for the faults of Wang S. et al.",
-    statistic,
 )

@@ -1,6 +1,6 @@
 """A slow drift of a height, by the slope of its difference to the barometer over two minutes."""
 
-from sensorfault.methods.drifting import Setting, Statistic, recipe
+from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
 from sensorfault.monitor.statistic.slope import Slope
 
 NAME = "slope"
@@ -11,9 +11,9 @@ def statistic(setting: Setting, channels: int) -> Statistic:
     return setting.windowed(Slope(), channels)
 
 
+TEST = DriftTest(NAME, statistic)
 RECIPE = recipe(
-    NAME,
+    TEST,
     "Slope of receiver minus barometer over 130 s",
     "EXPERIMENTS, slow drift; for the faults of Wang S. et al.",
-    statistic,
 )

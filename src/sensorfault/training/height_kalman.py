@@ -55,6 +55,7 @@ def fit_height_kalman(log: Log, height: int, roles: Roles) -> HeightKalman:
         q=jnp.asarray(q),
         r=jnp.asarray(r),
         gap_s=jnp.asarray(fixes.gap_s),
+        below=jnp.asarray(-1.0 if inertial and np.nanmedian(log.value[:, inertial[-1]]) > 0 else 1.0),
         outputs=outputs,
         inertial=inertial,
     )

@@ -16,6 +16,7 @@ from jaxtyping import Array, Bool, Float, Float32, Int
 
 from sensorfault.logs.table import LogError
 from sensorfault.training.fixes import Fixes
+from sensorfault.training.multistep_loss import Weights, Windowed, loss_of
 from sensorfault.vehicles.height import MOST, StepNetwork
 
 HIDDEN = 10
@@ -48,28 +49,8 @@ class Trained:
     loss: Float[np.ndarray, "S M E"]
 
 
-class _Weights(NamedTuple):
-    """Of K networks with J steps each."""
-
-    w: Float32[Array, "K J H V"]
-    b: Float32[Array, "K J H"]
-    v: Float32[Array, "K J H"]
-    c: Float32[Array, "K J"]
-
-
-class _Data(NamedTuple):
-    """Windows of L steps over T fixes: scaled height and inputs, and Δt in periods of the step that begins there."""
-
-    height: Float32[Array, " T"]
-    inputs: Float32[Array, "T U"]
-    dt: Float32[Array, " T"]
-    first: Int[Array, " W"]
-    weight: Float32[Array, "K L"]  # of each step's error, of each network
-    unit: Float32[Array, ""]  # spread of an increment, in halves of the height's range
-
-
 class _Now(NamedTuple):
-    weights: _Weights
+    weights: Weights
     adam: Any
     best: Float32[Array, " K"]
     since: Int[Array, " K"]  # epochs since then
@@ -100,7 +81,7 @@ def train_steps(
     weight = np.array([[max(n - j, 0) for j in range(longest)] for n in steps], float)
     weight /= weight.sum(axis=1, keepdims=True)  # of step j: N + 1 - j
     seen = (np.column_stack([fixes.height, fixes.inputs]) - center) / half
-    data = _Data(
+    data = Windowed(
         height=_f32(seen[:, 0]),
         inputs=_f32(np.clip(seen[:, 1:], -MOST, MOST)),
         dt=_f32(np.append(np.diff(fixes.time), 0.0) / fixes.period_s),
@@ -127,16 +108,16 @@ def _f32(x: Any) -> Float32[Array, "..."]:
     return jnp.asarray(x, jnp.float32)
 
 
-def _start(seeds: Sequence[tuple[int, int]], sets: int, inputs: int) -> _Weights:
+def _start(seeds: Sequence[tuple[int, int]], sets: int, inputs: int) -> Weights:
     """Hidden weights uniform in ±√(6 / (inputs + hidden)) (Glorot & Bengio 2010); the output foretells no change."""
     bound = np.sqrt(6 / (inputs + HIDDEN))
     w = [np.random.default_rng(seed).uniform(-bound, bound, (sets, HIDDEN, inputs)) for seed in seeds]
     nothing = np.zeros((len(seeds), sets, HIDDEN))
-    return _Weights(_f32(np.stack(w)), _f32(nothing), _f32(nothing), _f32(nothing[..., 0]))
+    return Weights(_f32(np.stack(w)), _f32(nothing), _f32(nothing), _f32(nothing[..., 0]))
 
 
 @partial(jax.jit, static_argnums=2)
-def _trained(data: _Data, start: _Weights, schedule: Schedule) -> tuple[_Weights, Float32[Array, "E K"]]:
+def _trained(data: Windowed, start: Weights, schedule: Schedule) -> tuple[Weights, Float32[Array, "E K"]]:
     """All networks, each until it ends; what has ended stands still."""
     many, size = data.weight.shape[0], min(schedule.batch, data.first.size)
 
@@ -145,9 +126,9 @@ def _trained(data: _Data, start: _Weights, schedule: Schedule) -> tuple[_Weights
         batches = order[: order.size // size * size].reshape(-1, size)
         rate = schedule.rate * schedule.drop ** (now.epoch // schedule.every).astype(jnp.float32)
 
-        def batch(carry: tuple[_Weights, Any], first: Int[Array, " B"]) -> tuple[tuple[_Weights, Any], Array]:
+        def batch(carry: tuple[Weights, Any], first: Int[Array, " B"]) -> tuple[tuple[Weights, Any], Array]:
             weights, adam = carry
-            (_, error), slope = jax.value_and_grad(_loss, has_aux=True)(weights, data, first)
+            (_, error), slope = jax.value_and_grad(loss_of, has_aux=True)(weights, data, first)
             change, adam = _ADAM.update(slope, adam)
 
             def moved(w: Array, d: Array) -> Array:
@@ -178,26 +159,3 @@ def _trained(data: _Data, start: _Weights, schedule: Schedule) -> tuple[_Weights
         ),
     )
     return end.weights, end.loss
-
-
-def _loss(weights: _Weights, data: _Data, first: Int[Array, " B"]) -> tuple[Float32[Array, ""], Float32[Array, " K"]]:
-    """Σ_j w_j (ĥ(k+j) - h(k+j))² over each network's steps, in spreads of an increment: mean over the windows."""
-    many, longest = data.weight.shape
-    at = first[None] + jnp.arange(longest + 1)[:, None]
-    height, dt = data.height[at], data.dt[at]
-    inputs = data.inputs[at[:-1]].transpose(0, 2, 1)  # [step, input, window]: windows fill the lanes
-    shared = weights.c.shape[1] == 1
-
-    def step(h: Array, row: tuple[Array, ...]) -> tuple[Array, Array]:
-        j, x, dt, target = row
-        w, b, v, c = (part[:, 0] if shared else part[:, j] for part in weights)
-        low = jnp.clip(h, -MOST, MOST)
-        hidden = jax.nn.relu(w[:, :, :1] * low[:, None] + w[:, :, 1:] @ x + b[:, :, None])
-        h = h + data.unit * dt * ((v[:, :, None] * hidden).sum(axis=1) + c[:, None])
-        return h, (((h - target) / data.unit) ** 2).mean(axis=1)
-
-    rows = jnp.arange(longest), inputs, dt[:-1], height[1:]
-    _, square = lax.scan(step, jnp.tile(height[0], (many, 1)), rows)
-    # step weights N + 1 - j
-    error = (data.weight.T * square).sum(axis=0)
-    return error.sum(), error

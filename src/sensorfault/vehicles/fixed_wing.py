@@ -19,8 +19,8 @@ class Roles:
 
     `height`: of the satellite receiver [m]; `barometric`: the height that the air's pressure says [m]. `vertical`: the
     receiver's vertical speed [m/s]; times `upward` it is a climb. `inertial`: another sensor's vertical speed, with its
-    sign. `elevator` and `throttle` are commands or deflections in any unit. `accelerometer`: columns of x, y and z,
-    which point forward, right and down.
+    sign. `elevator` and `throttle` are commands or deflections in any unit. `accelerometer`: columns of x (forward), y
+    and z (right and down, or left and up).
     """
 
     height: int | None = None

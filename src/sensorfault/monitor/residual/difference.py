@@ -157,7 +157,7 @@ class Difference(eqx.Module):
         return Residual(
             time=sample.time,
             value=jnp.where(mine & valid, e, 0.0),
-            cov=jnp.eye(self.channels) * noise,
+            cov=jnp.eye(self.channels) * noise[None],
             measured=sample.value,
             expected=jnp.where(mine & known, expected, sample.value),
             noise=noise,

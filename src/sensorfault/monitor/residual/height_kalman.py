@@ -38,14 +38,16 @@ class HeightKalman(eqx.Module):
     Wang et al., whose innovation has the variance S. The residual is the innovation.
 
     `outputs`: columns of the height, then of what there is of climb and barometric height; `rows` is H, with the sign
-    of the climb. `inertial`: columns of pitch, roll and the accelerometer's x, y, z (forward, right, down), or nothing:
-    then the climb is a random walk. The filter begins at a height, and anew after `gap_s` without one.
+    of the climb. `inertial`: columns of pitch (nose up), roll (right wing down) and the accelerometer's x (forward), y
+    and z, or nothing: then the climb is a random walk. `below`: 1 if y points right and z down, -1 if left and up. The
+    filter begins at a height, and anew after `gap_s` without one.
     """
 
     rows: Float[Array, "O 4"]
     q: Float[Array, "3"]  # a second adds so much to the variance of climb [(m/s)^2] and of both biases
     r: Float[Array, " O"]
     gap_s: Float[Array, ""]
+    below: Float[Array, ""]
     outputs: tuple[int, ...] = eqx.field(static=True)
     inertial: tuple[int, ...] = eqx.field(static=True, default=())
 
@@ -138,7 +140,8 @@ class HeightKalman(eqx.Module):
         good = _of(sample.present, self.inertial).all() & (_of(trust.measured, self.inertial) | ~fresh).all()
         pitch, roll, x, y, z = _of(sample.value, self.inertial)
         # a = f_x sin θ - (f_y sin φ + f_z cos φ) cos θ - g
-        up = x * jnp.sin(pitch) - (y * jnp.sin(roll) + z * jnp.cos(roll)) * jnp.cos(pitch) - GRAVITY
+        side = self.below * (y * jnp.sin(roll) + z * jnp.cos(roll))
+        up = x * jnp.sin(pitch) - side * jnp.cos(pitch) - GRAVITY
         return jnp.where(good, up, 0.0), good
 
 

@@ -155,5 +155,5 @@ def mean(counts: list[Count]) -> Count:
 
 def _told(numbers: Numbers, words: str, method: str, found: Count, chance: Count, slope: float | None) -> None:
     told = {"detection_rate": found.rate, "chance": chance.rate, "delay_steps": found.delay}
-    told |= {"chance_delay_steps": chance.delay, "missed": found.missed}
+    told |= {"chance_delay_steps": chance.delay} | ({"missed": found.missed} if slope is None else {})
     numbers.add(words, method, told, DRIFT, slope)

@@ -92,17 +92,19 @@ def _closed(told: Drift) -> str:
 
 
 def _other(told: Drift) -> str:
-    fixes = told.contenders[0].flown
     far = told.real.mean(f"{HARD} N{MANY}", NETWORK, "far")
     rate, chance = (_each(told, metric, MATCHED, NETWORK)[1] for metric in ("detection_rate", "chance"))
     steps = (FEW, MANY, LONGEST)
     found = [told.injected.mean(f"{HARD} {WHOLE} N{n}", KINEMATIC, "detection_rate", DRIFT) for n in steps]
+    (network,) = [one for one in told.contenders if one.trained and not one.variant]
+    learned = np.mean([network.typical[k] for k in network.of(MANY)])
+    own, plain = (told.real.mean(f"N{MANY}", method, "rms") for method in (NETWORK, KINEMATIC))
     return (
-        f"D, {told.data}: fixes at 1 Hz, so N steps are N seconds, {fixes.start} fixes to learn from and few ramps to "
-        "judge. A network that sees the vertical speed at the beginning of a whole second errs by "
-        f"{_rms(told, NETWORK)} m at N = {FEW} and {MANY}, the mean of the speeds at both ends by "
-        f"{_rms(told, KINEMATIC)} m; its limits do not hold on the part judged ({HARD}: {far:.0%} of its healthy "
-        f"steps pass those of N = {MANY}), and at {MATCHED} it flags {rate:.1%}, by chance {chance:.1%}. Over the "
+        f"D, {told.data}: fixes at 1 Hz, so N steps are N seconds; {network.flown.start} fixes to learn from and few "
+        f"ramps to judge. With N = {MANY} the network errs by {learned:.1f} m on the part it learned from and by "
+        f"{own:.1f} m on the part judged, the mean of the vertical speeds at both ends of a second by {plain:.1f} m: "
+        f"it has learned this flight, not how an aircraft climbs. Its limits do not hold ({HARD}: {far:.0%} of the "
+        f"healthy steps judged pass them), and at {MATCHED} it flags {rate:.1%}, by chance {chance:.1%}. Over the "
         f"whole flight the kinematic observer flags {', '.join(f'{x:.0%}' for x in found)} with N = "
         f"{', '.join(map(str, steps))}."
     )

@@ -1,6 +1,6 @@
 """Slow drift done right: ramps in the second half of a flight, limits from the first, an independent reference."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import sensorfault._jax  # isort: skip  # noqa: F401
@@ -10,127 +10,58 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.logs.table import Log, Sensor
-from sensorfault.methods import cusum, drifting, mean_pair, ramp_glr, slope
-from sensorfault.methods.drifting import Setting, Statistic, Test
+from sensorfault.methods import drifting
+from sensorfault.methods.drifting import DriftTest, Setting
 from sensorfault.monitor.monitor import Monitor
-from sensorfault.monitor.residual.difference import Difference
-from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
-from sensorfault.monitor.statistic.ewma import Ewma
-from sensorfault.monitor.statistic.windowed_chi_square import WindowedChiSquare
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.studies.findings import Effort, Row
+from sensorfault.studies.multistep.beats import Beats, compared
 from sensorfault.studies.multistep.contenders import watch
 from sensorfault.studies.multistep.flights import FLIGHTS, flight
+from sensorfault.studies.multistep.slow_rivals import SWEPT, TESTS
 from sensorfault.studies.numbers import Numbers
-from sensorfault.training.tapes import extra_tape
-from sensorfault.vehicles.fixed_wing import roles
 
 EXPERIMENT, DRIFT = "D-slow", "drift"
 RATES = (0.1, 0.3, 1.0)  # [m/s]
 EVERY_S, BEGIN_S, LEAST_S = 15.0, 5.0, 100.0  # from one onset to the next, after half of the flight, before its end
 WHERE = ("height", "height-and-vd")  # what drifts
-WINDOWS = (60.0, 90.0, 110.0, 120.0, 130.0, 140.0, 150.0, 180.0)  # of the sweep [s]
+WINDOWS = (60.0, 90.0, 110.0, 130.0, 150.0, 180.0)  # of the sweep [s]
+SLOTS = 210  # for the longest of them: one compilation serves all
 SHORT, PLAIN = "W60", "no-lag"  # the prototype's window; both heights taken to show the same moment
-MEMORY_S = 120.0  # of the offset, for tests that want none
-
-
-def _ewma(setting: Setting, channels: int) -> Statistic:
-    return Ewma(jnp.full(channels, setting.window_s / 4), setting.gap_s)
-
-
-def _averaged(setting: Setting, channels: int) -> Statistic:
-    return setting.windowed(AveragedInnovation(), channels)
-
-
-def _chi_square(setting: Setting, channels: int) -> Statistic:
-    return setting.windowed(WindowedChiSquare(), channels)
-
-
-_SLOTS = 210  # for the longest of WINDOWS: one compilation serves all
-_KEEPING, _FOLLOWING = Setting(slots=_SLOTS), Setting(memory_s=MEMORY_S, window_s=60.0, slots=_SLOTS)
-# Beside the recipes tests that are parts only. A window of 60 s is the prototype's.
-CONTENDERS: dict[str, tuple[Test, dict[str, Setting]]] = {
-    slope.NAME: (slope.statistic, {"": _KEEPING, SHORT: replace(_KEEPING, window_s=60.0)}),
-    mean_pair.NAME: (mean_pair.statistic, {"": _KEEPING, SHORT: replace(_KEEPING, window_s=60.0)}),
-    ramp_glr.NAME: (ramp_glr.statistic, {"": _KEEPING, SHORT: replace(_KEEPING, window_s=60.0)}),
-    cusum.NAME: (cusum.statistic, {"": cusum.SETTING}),
-    "ewma": (_ewma, {"": _FOLLOWING}),
-    "averaged-innovation": (_averaged, {"": _FOLLOWING}),
-    "windowed-chi-square": (_chi_square, {"": _FOLLOWING}),
-}
-SWEPT = (slope.NAME, ramp_glr.NAME)  # whose windows are swept, and which are judged without the lag too
-
-
-@dataclass(frozen=True)
-class Beats:
-    """A flight from beat to beat: a log of the height minus the barometer, lag taken out, and nought to compare it to.
-
-    `half`: when the second half begins [s]. `when`: the mean time of the fixes of each beat [s].
-    """
-
-    log: Log
-    when: Float[np.ndarray, " T"]
-    half: float
-    fitted: Difference
-
-    @classmethod
-    def of(cls, name: str, whole: Log, setting: Setting) -> "Beats":
-        """The lag is learned from the first half."""
-        half = float(whole.time[0]) + whole.duration_s / 2
-        part = drifting.difference(name, whole.between(end_s=half), setting)
-        beat = extra_tape(part, whole)
-        rows = beat.closed
-        e = beat.difference[rows] - float(part.lag_s) * beat.speed[rows]
-        pair = whole.select(whole.channels[c].path for c in (part.measured, part.reference))
-        value = np.column_stack([e, np.zeros_like(e)])
-        log = replace(
-            pair,
-            time=whole.time[rows],
-            value=value,
-            fresh=np.isfinite(value),
-            sensors=tuple(Sensor(sensor.name, setting.beat_s) for sensor in pair.sensors),
-        )
-        plain = replace(part, lag_s=jnp.zeros(()), measured=0, reference=1, channels=2)
-        return cls(log, beat.time[rows], half, plain)
-
-    def with_ramp(self, rate: float, onset_s: float) -> Log:
-        """With this ramp on the height."""
-        ramp = rate * np.maximum(self.when - onset_s, 0.0)
-        return replace(self.log, value=self.log.value + np.column_stack([ramp, 0 * ramp]))
+HALF, WHOLE = "first-half", "whole-flight"  # what a limit is learned from
 
 
 @dataclass(frozen=True)
 class Told:
-    """Of one test on one flight: scores of the healthy flight, the limit; of each rate and onset the delay [s].
+    """Of one test under one limit: scores of the healthy flight; of each rate and onset the delay [s], to the end of
+    the flight where nothing was found.
 
-    `false`: alarms in the second half without a fault, an unbroken run of them once; `far`: their share of the beats.
+    `chance_s`: the delay without a ramp. `false`: alarms in the second half of the healthy flight, an unbroken run of
+    them once; `far`: their share of the beats. `ratio`: largest healthy score of the second half over that of the
+    first. `ramped`: the score with the slowest ramp from the middle onset on, `onset_s`.
     """
 
     time: Float[np.ndarray, " T"]
     score: Float[np.ndarray, " T"]
+    ramped: Float[np.ndarray, " T"]
+    onset_s: float
     limit: float
-    half: float
     delay: Float[np.ndarray, "rates onsets"]
     missed: Bool[np.ndarray, "rates onsets"]
+    chance_s: float
     false: int
     far: float
-
-    @property
-    def ratio(self) -> float:
-        """Largest healthy score of the second half over that of the first."""
-        second = self.time >= self.half
-        return float(np.nanmax(self.score[second]) / np.nanmax(self.score[~second]))
+    ratio: float
 
 
 @dataclass
 class Slow:
-    """Of one flight: numbers, and what the figures show. `windows`: slope and GLR with windows of other lengths."""
+    """Of one flight: numbers, and what the figures show. `windows`: tests with windows of other lengths, by method."""
 
     data: str
     real: Numbers
     injected: Numbers
-    told: dict[tuple[str, str], Told] = field(default_factory=dict)  # by method and variant
+    told: dict[tuple[str, str], Told] = field(default_factory=dict)  # by method and variant; limits of the first half
     windows: dict[str, dict[float, Told]] = field(default_factory=dict)
 
     def rows(self) -> Iterator[Row]:
@@ -140,7 +71,11 @@ class Slow:
 
 
 def slow(effort: Effort) -> list[Slow]:
-    """Both flights."""
+    """Both flights.
+
+    Raises:
+        LogError: the real data are not there.
+    """
     return [_flight(name, i / len(FLIGHTS), effort) for i, name in enumerate(FLIGHTS)]
 
 
@@ -148,74 +83,81 @@ def _flight(name: str, begun: float, effort: Effort) -> Slow:
     whole = compared(flight(name))
     found = Slow(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"))
     beats, plain = (Beats.of(name, whole, replace(drifting.DEFAULT, lagging=lagging)) for lagging in (True, False))
-    for i, (method, (test, variants)) in enumerate(CONTENDERS.items()):
-        effort.tell(f"{name}: {method}, ramps", begun + i / len(CONTENDERS) / len(FLIGHTS))
+    for i, (method, test) in enumerate(TESTS.items()):
+        effort.tell(f"{name}: {method}, ramps", begun + i / len(TESTS) / len(FLIGHTS))
         swept = () if effort.quick or method not in SWEPT else WINDOWS
-        settings = [*variants.values(), *(replace(_KEEPING, window_s=w) for w in swept)]
+        own = replace(test.setting, slots=SLOTS)
+        settings = [own, *(replace(own, window_s=w) for w in swept)]
         told = judge(beats, test, settings)
-        for variant, one in zip(variants, told, strict=False):
-            _add(found, method, variant, one)
+        _add(found, method, "", HALF, told[0])
+        _add(found, method, "", WHOLE, judge(beats, test, [own], whole=True)[0])
         if swept:
-            found.windows[method] = dict(zip(swept, told[len(variants) :], strict=True))
-            (one,) = judge(plain, test, [_KEEPING])
-            _add(found, method, PLAIN, one)
+            found.windows[method] = dict(zip(swept, told[1:], strict=True))
+            _add(found, method, SHORT, HALF, told[1 + WINDOWS.index(60.0)])
+            _add(found, method, SHORT, WHOLE, judge(beats, test, [settings[1]], whole=True)[0])
+            _add(found, method, PLAIN, HALF, judge(plain, test, [own])[0])
     return found
 
 
-def compared(whole: Log) -> Log:
-    """A flight with its two heights alone, on ticks on which one of them comes."""
-    columns = roles(whole)
-    pair = whole.select(whole.channels[c].path for c in (columns.height, columns.barometric) if c is not None)
-    return pair.without(np.flatnonzero(~pair.fresh.any(axis=1)))
-
-
-def judge(beats: Beats, test: Test, settings: Sequence[Setting]) -> list[Told]:
-    """Every rate from every onset, for each setting under its limit from the first half."""
+def judge(beats: Beats, test: DriftTest, settings: Sequence[Setting], whole: bool = False) -> list[Told]:
+    """Every rate from every onset, for each setting, under its limit from the first half or from the whole flight."""
     log, end = beats.log, float(beats.log.time[-1])
     onsets = np.arange(beats.half + BEGIN_S, end - LEAST_S, EVERY_S)
     cells = [log, *(beats.with_ramp(rate, float(onset)) for rate in RATES for onset in onsets)]
     deaf = [_deaf(beats, test, setting) for setting in settings]
     stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *deaf)
     score = watch(stacked, cells).score
-    return [_told(beats, each, onsets, setting) for each, setting in zip(score, settings, strict=True)]
+    learned = np.inf if whole else beats.half
+    return [_told(beats, each, onsets, s.margin, learned) for each, s in zip(score, settings, strict=True)]
 
 
-def _told(beats: Beats, score: Float[np.ndarray, "N T"], onsets: Float[np.ndarray, " o"], setting: Setting) -> Told:
+def _deaf(beats: Beats, test: DriftTest, setting: Setting) -> Monitor:
+    """The monitor of a recipe, for a flight that has been brought to beats."""
+    part = replace(beats.fitted, memory_s=jnp.asarray(setting.memory_s))
+    return drifting.monitor(beats.log, part, test.statistic(setting, 2), Fixed(jnp.full(2, jnp.inf)), setting)
+
+
+def _told(
+    beats: Beats, score: Float[np.ndarray, "N T"], onsets: Float[np.ndarray, " o"], margin: float, learned_s: float
+) -> Told:
     """By scores without consequences: what an alarm changes comes after the first alarm."""
-    time, end = beats.log.time, float(beats.log.time[-1])
-    limit = setting.margin * float(np.nanmax(score[0, time < beats.half]))
-    alarm, begun = score > limit, np.tile(onsets, len(RATES))
-    after = alarm[1:] & (time[None] >= begun[:, None])
-    found = after.any(axis=1)
-    delay = np.where(found, time[after.argmax(axis=1)], end) - begun
-    quiet = alarm[0, time >= beats.half]
+    time, second = beats.log.time, beats.log.time >= beats.half
+    limit = margin * float(np.nanmax(score[0, time < learned_s]))
+    shape, begun, middle = (len(RATES), len(onsets)), np.tile(onsets, len(RATES)), len(onsets) // 2
+    delay, found = _first(time, score[1:] > limit, begun)
+    chance, _ = _first(time, np.broadcast_to(score[0] > limit, (len(onsets), len(time))), onsets)
+    quiet = score[0, second] > limit
     return Told(
         time=time,
         score=score[0],
+        ramped=score[1 + middle],
+        onset_s=float(onsets[middle]),
         limit=limit,
-        half=beats.half,
-        delay=delay.reshape(len(RATES), -1),
-        missed=~found.reshape(len(RATES), -1),
+        delay=delay.reshape(shape),
+        missed=~found.reshape(shape),
+        chance_s=float(chance.mean()),
         false=int(quiet[0]) + int((quiet[1:] & ~quiet[:-1]).sum()),
         far=float(quiet.mean()),
+        ratio=float(np.nanmax(score[0, second]) / np.nanmax(score[0, ~second])),
     )
 
 
-def _deaf(beats: Beats, test: Test, setting: Setting) -> Monitor:
-    """The monitor of a recipe, for a flight that has been brought to beats."""
-    part = replace(beats.fitted, memory_s=jnp.asarray(setting.memory_s))
-    return drifting.monitor(beats.log, part, test(setting, 2), Fixed(jnp.full(2, jnp.inf)), setting)
+def _first(
+    time: Float[np.ndarray, " T"], alarm: Bool[np.ndarray, "N T"], begun: Float[np.ndarray, " N"]
+) -> tuple[Float[np.ndarray, " N"], Bool[np.ndarray, " N"]]:
+    """Time from each onset to the first alarm, or to the end, and whether there was one."""
+    after = alarm & (time[None] >= begun[:, None])
+    found = np.asarray(after.any(axis=1))
+    return np.where(found, time[after.argmax(axis=1)], time[-1]) - begun, found
 
 
-def _add(found: Slow, method: str, variant: str, told: Told) -> None:
+def _add(found: Slow, method: str, variant: str, learned: str, told: Told) -> None:
     """The barometer knows nothing of the receiver's vertical speed, so it is no matter whether that drifts too."""
-    found.told[method, variant] = told
-    words = " ".join(part for part in (variant, "first-half") if part)
+    if learned == HALF:
+        found.told[method, variant] = told
+    words = " ".join(part for part in (variant, learned) if part)
     found.real.add(words, method, {"far": told.far, "false_events": told.false, "healthy_ratio": told.ratio})
     for where in WHERE:
-        for i, rate in enumerate(RATES):
-            numbers: Mapping[str, float] = {
-                "delay_s": float(told.delay[i].mean()),
-                "detection_rate": float(1 - told.missed[i].mean()),
-            }
+        for rate, delay, missed in zip(RATES, told.delay, told.missed, strict=True):
+            numbers = {"delay_s": delay.mean(), "missed": missed.mean(), "chance_delay_s": told.chance_s}
             found.injected.add(f"{words} {where}", method, numbers, DRIFT, rate)

@@ -1,0 +1,56 @@
+"""How an aircraft goes up and down: heights that a pilot might choose, and what he does to get there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.simulation.motion import GRAVITY, Motion
+from sensorfault.simulation.noise import gauss_markov, smooth
+
+HEIGHT, HEIGHT_SD, HEIGHT_S = 60.0, 20.0, 60.0  # above the start [m], and for how long one is kept [s]
+EASING_S = 16.0  # a change of height is begun and ended over about this time
+SPEED, SPEED_SD, SPEED_S = 8.0, 0.6, 20.0  # through the air, which is still [m/s]
+TURN_SD, TURN_S = 0.15, 12.0  # of the heading [rad/s]
+RESPONSE_S = 1.5  # the climb follows throttle and elevator so late
+PITCH, PITCH_PER_CLIMB = 0.08, 0.09  # nose up in level flight [rad], and more of it for each m/s to climb
+HOVER, THROTTLE_PER_CLIMB = 0.5, 0.12  # throttle in level flight, and more of it for each m/s
+
+
+@dataclass(frozen=True)
+class Flight:
+    """The motion, and the pilot's part in it: throttle (0 to 1) and elevator (-1 to 1)."""
+
+    motion: Motion
+    throttle: Float[np.ndarray, " T"]
+    elevator: Float[np.ndarray, " T"]
+
+
+def soar(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Flight:
+    """A flight in still air, already aloft. Turns are flown coordinated."""
+    step, n = float(time[1] - time[0]), len(time)
+    wander = smooth(gauss_markov(rng, n, step, HEIGHT_S), round(EASING_S / step))
+    up = HEIGHT + HEIGHT_SD * wander
+    climb = np.gradient(up, step)
+    # climb' = (command - climb) / RESPONSE_S
+    command = climb + RESPONSE_S * np.gradient(climb, step)
+    eased = round(2.0 / step)
+    speed = SPEED + SPEED_SD * smooth(gauss_markov(rng, n, step, SPEED_S), eased)
+    turn = TURN_SD * smooth(gauss_markov(rng, n, step, TURN_S), eased)
+    heading = rng.uniform(0, 2 * np.pi) + np.cumsum(turn) * step
+    pitch_up = PITCH + PITCH_PER_CLIMB * command
+    level = np.sqrt(np.maximum(speed**2 - climb**2, 1.0))
+    velocity = np.stack([level * np.cos(heading), level * np.sin(heading), climb], axis=1)
+    east_north = np.cumsum(velocity[:, :2], axis=0) * step
+    motion = Motion(
+        time=time,
+        position=np.column_stack([east_north - east_north[0], up - up[0]]),
+        velocity=velocity,
+        speed=level,
+        acceleration=np.stack([np.gradient(level, step), level * turn, np.gradient(climb, step)], axis=1),
+        roll=-np.arctan(level * turn / GRAVITY),
+        pitch=-pitch_up,
+        heading=heading,
+    )
+    trim = np.gradient(pitch_up, step)
+    return Flight(motion, np.clip(HOVER + THROTTLE_PER_CLIMB * command, 0, 1), np.clip(pitch_up + trim, -1, 1))

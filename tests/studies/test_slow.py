@@ -1,0 +1,71 @@
+"""Slow drifts of two real flights: what EXPERIMENTS asks for, and that the short way round is the whole monitor's."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sensorfault.detector import detect
+from sensorfault.faults.fault import Fault
+from sensorfault.faults.inject import inject
+from sensorfault.logs.table import Channel, Log, Sensor
+from sensorfault.methods import drifting, ramp_glr, slope
+from sensorfault.simulation.flapping_wing import fly
+from sensorfault.studies.multistep.beats import Beats, compared
+from sensorfault.studies.multistep.flights import flight
+from sensorfault.studies.multistep.slow import RATES, SLOTS, Told, judge
+
+MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}
+
+
+def judged(beats: Beats, test: drifting.DriftTest) -> Told:
+    return judge(beats, test, [replace(test.setting, slots=SLOTS)])[0]
+
+
+@cache
+def beats(name: str) -> Beats:
+    return Beats.of(name, compared(flight(name)), drifting.DEFAULT)
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("test", [slope.TEST, ramp_glr.TEST], ids=lambda test: test.name)
+@pytest.mark.parametrize("name", MUST)
+def test_real_ramps_are_found_in_time_and_nothing_else_is(
+    name: str, test: drifting.DriftTest, real_data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
+    told = judged(beats(name), test)
+    assert told.false == 0
+    assert not told.missed.any()
+    assert (told.delay.mean(axis=1) <= MUST[name]).all()
+    assert told.delay.shape[1] > 10
+
+
+def test_a_ramp_on_beats_is_a_ramp_on_fixes() -> None:
+    """The study lays a ramp on the beats' differences; the whole monitor, on the whole log, alarms at the same time."""
+    whole = compared(fly(700.0, seed=11, imu_hz=10.0, gnss_hz=5.0, barometer_hz=10.0, beat_hz=0.0).log)
+    short = Beats.of("slope", whole, drifting.DEFAULT)
+    told = judged(short, slope.TEST)
+    model = drifting.drift(whole.between(end_s=short.half), slope.TEST)
+    assert told.limit == pytest.approx(model.summary["limit"], rel=1e-6)
+    onset = short.half + 5.0
+    for i, rate in enumerate(RATES):
+        wrong = inject(whole, [Fault("drift", "gnss", "altitude", onset, 400.0, rate)]).log
+        events = [e for e in detect(model, wrong).events if e.start_s >= onset and e.kind != "miss"]
+        assert events[0].start_s - onset == pytest.approx(told.delay[i, 0], abs=1.1)
+
+
+def test_a_silent_half_promises_nothing() -> None:
+    """Two heights that agree to the bit but for a step in the second half: one false event, said so."""
+    time = np.arange(800.0)
+    random = np.random.default_rng(0)
+    noise = random.standard_normal(800)
+    value = np.column_stack([100 + noise + 8.0 * (time > 600), np.full(800, 50.0)])
+    channels = (Channel("altitude", "gnss", "m"), Channel("altitude", "barometer", "m"))
+    log = Log(time, value, np.ones((800, 2), bool), channels, (Sensor("gnss", 1.0), Sensor("barometer", 1.0)))
+    told = judged(Beats.of("slope", log, drifting.DEFAULT), slope.TEST)
+    assert told.false == 1
+    assert told.ratio > 3
+    assert 0.2 < told.far < 0.5
