@@ -147,6 +147,15 @@ def test_a_witness_set_anew_is_believed_again() -> None:
     assert (told.channel[since > 400.0] == OK).all()
 
 
+def test_a_vertical_speed_is_named_and_believed_again() -> None:
+    """What it added up to while it lied stays wrong."""
+    paths = (GNSS, DOWN, BARO)
+    part, told = lied(Fault("bias", "gnss", "down", ONSET_S, 20.0, 2.0), paths=paths)
+    assert accused(told, paths) == {DOWN}
+    assert (told.channel[np.abs(part.time - ONSET_S - 14.0) < 5.0][:, 1] == FAULT).all()
+    assert (told.channel[part.time > ONSET_S + 20.0 + 75.0] == OK).all()
+
+
 def test_what_cannot_be_compared_is_said() -> None:
     with pytest.raises(LogError, match="has 1 channels that tell its height"):
         build(log(GNSS).between(end_s=FITTED_S), 0, SILENT)

@@ -135,7 +135,8 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
         suspicious = doubted.start <= k < doubted.stop
         for p, (i, j) in enumerate(PAIRS):
             if fresh[k, i] or fresh[k, j]:
-                if suspicious and any(x is not None for x in kept[p]):
+                heights = [fresh[k, w] for w in (i, j) if w != DOWN]
+                if suspicious and any(heights) and any(x is not None for x in kept[p]):
                     doubt[p] = max(doubt[p], 1e-6)
                 elif not suspicious:
                     if doubt[p] > 10 * BEAT_S and 2 in (i, j):

@@ -12,6 +12,7 @@ HEIGHT, HEIGHT_SD, HEIGHT_S = 60.0, 20.0, 60.0  # above the start [m], and for h
 EASING_S = 16.0  # a change of height is begun and ended over about this time
 SPEED, SPEED_SD, SPEED_S = 8.0, 0.6, 20.0  # through the air, which is still [m/s]
 TURN_SD, TURN_S = 0.15, 12.0  # of the heading [rad/s]
+EDGE_S = 2.0
 RESPONSE_S = 1.5  # the climb follows throttle and elevator so late
 PITCH, PITCH_PER_CLIMB = 0.08, 0.09  # nose up in level flight [rad], and more of it for each m/s to climb
 HOVER, THROTTLE_PER_CLIMB = 0.5, 0.12  # throttle in level flight, and more of it for each m/s
@@ -28,7 +29,9 @@ class Flight:
 
 def soar(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Flight:
     """A flight in still air, already aloft. Turns are flown coordinated."""
-    step, n = float(time[1] - time[0]), len(time)
+    step = float(time[1] - time[0])
+    edge = round(EDGE_S / step)  # flown, and cut off: at its ends a derivative is none
+    n = len(time) + 2 * edge
     wander = smooth(gauss_markov(rng, n, step, HEIGHT_S), round(EASING_S / step))
     up = HEIGHT + HEIGHT_SD * wander
     climb = np.gradient(up, step)
@@ -42,15 +45,19 @@ def soar(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Flight:
     level = np.sqrt(np.maximum(speed**2 - climb**2, 1.0))
     velocity = np.stack([level * np.cos(heading), level * np.sin(heading), climb], axis=1)
     east_north = np.cumsum(velocity[:, :2], axis=0) * step
+    acceleration = np.stack([np.gradient(level, step), level * turn, np.gradient(climb, step)], axis=1)
+    trimmed = pitch_up + np.gradient(pitch_up, step)
+    kept = slice(edge, edge + len(time))
+    position = np.column_stack([east_north, up])[kept]
     motion = Motion(
         time=time,
-        position=np.column_stack([east_north - east_north[0], up - up[0]]),
-        velocity=velocity,
-        speed=level,
-        acceleration=np.stack([np.gradient(level, step), level * turn, np.gradient(climb, step)], axis=1),
-        roll=-np.arctan(level * turn / GRAVITY),
-        pitch=-pitch_up,
-        heading=heading,
+        position=position - position[0],
+        velocity=velocity[kept],
+        speed=level[kept],
+        acceleration=acceleration[kept],
+        roll=-np.arctan(level * turn / GRAVITY)[kept],
+        pitch=-pitch_up[kept],
+        heading=heading[kept],
     )
-    trim = np.gradient(pitch_up, step)
-    return Flight(motion, np.clip(HOVER + THROTTLE_PER_CLIMB * command, 0, 1), np.clip(pitch_up + trim, -1, 1))
+    throttle = np.clip(HOVER + THROTTLE_PER_CLIMB * command, 0, 1)
+    return Flight(motion, throttle[kept], np.clip(trimmed, -1, 1)[kept])

@@ -22,6 +22,7 @@ class _State(NamedTuple):
 class _Work(NamedTuple):
     state: _State
     fresh: Bool[Array, " C"]
+    excused: Bool[Array, ""]  # all heights: a vertical speed alone is accused
 
 
 class Agreement(eqx.Module):
@@ -68,20 +69,24 @@ class Agreement(eqx.Module):
         growth = jnp.where(self._speaks(), 1 + memory.doubted / ((RECENT + PAST) * self.beat_s), 1.0)
         value = jnp.abs(gap) / (self.limit * growth[None])
         over = (known & (value > 1)).any(axis=0)
+        accused = named(over, covers, self.owner)
         # below these limits nobody disagrees; a lower one, set from outside, accuses both
-        blame = covers & (named(over, covers, self.owner) | ~over.any())[None]
+        blame = covers & (accused | ~over.any())[None]
+        who = _of(accused, self.columns)
+        excused = who.any() & ~(who & (self.upward == 0)).any()
         twice = jnp.concatenate([covers, covers]), jnp.concatenate([blame, blame]).astype(value.dtype)
-        return Score(value.ravel(), known.ravel(), *twice), _Work(state._replace(memory=memory), fresh)
+        return Score(value.ravel(), known.ravel(), *twice), _Work(state._replace(memory=memory), fresh, excused)
 
     def update(self, work: _Work, trust: Trust) -> _State:
         memory = work.state.memory
-        # What is kept out doubts its pairs, and what is under suspicion those that can be judged; what is believed
-        # ends the doubt.
-        out, bad, good = (
-            _of(x, self.columns) for x in (work.fresh & ~trust.measured, work.fresh & ~trust.learn, trust.learn)
-        )
+        # A height that is kept out doubts its pairs, and one under suspicion those that can be judged; what is believed
+        # ends the doubt. A vertical speed does not: what it has added up to stays wrong after it is right again.
+        new = _of(work.fresh, self.columns) & (self.upward == 0)
+        out = new & ~_of(trust.measured, self.columns)
+        bad = new & ~_of(trust.learn, self.columns) & ~work.excused
+        good = _of(trust.learn, self.columns) | work.excused
         i, j = self._sides()
-        ends = (good[i] | good[j]) & ~bad[i] & ~bad[j]
+        ends = (good[i] | good[j]) & ~bad[i] & ~bad[j] & ~out[i] & ~out[j]
         after = memory.doubting(out[i] | out[j] | (memory.sure.any(axis=0) & (bad[i] | bad[j])), ends)
         # what a speed has added up to since is no longer near the reference of before
         strayed = ends & (memory.doubted > RECENT * self.beat_s) & self._speaks()
