@@ -15,13 +15,14 @@ from sensorfault.methods import drifting, ramp_glr, slope
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.studies.multistep.beats import Beats, compared
 from sensorfault.studies.multistep.flights import flight
-from sensorfault.studies.multistep.slow import RATES, SLOTS, Told, judge
+from sensorfault.studies.multistep.slow import SLOTS
+from sensorfault.studies.multistep.slow_judge import HALF, RATES, Told, judge
 
 MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}
 
 
 def judged(beats: Beats, test: drifting.DriftTest) -> Told:
-    return judge(beats, test, [replace(test.setting, slots=SLOTS)])[0]
+    return judge(beats, test, [replace(test.setting, slots=SLOTS)])[0].told(HALF)
 
 
 @cache
