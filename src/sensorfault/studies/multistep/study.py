@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from sensorfault.studies.data import real
 from sensorfault.studies.findings import Effort, Findings, Row
+from sensorfault.studies.multistep import slow_page
 from sensorfault.studies.multistep.contenders import NETWORK
 from sensorfault.studies.multistep.drift import PRINTED, Drift, drifts
 from sensorfault.studies.multistep.figures import SLOW, of_drift
 from sensorfault.studies.multistep.remarks import remarks
-from sensorfault.studies.multistep.slow import slow
 
 STEPPED = 0.8  # share of the work
 PAPER = {  # of the mean over all slopes, and of figure 7; delays from the onset at step 500
@@ -31,8 +31,8 @@ def study(effort: Effort) -> Findings:
     rows = tuple(row for one in told for row in rows_of(one))
     figures = tuple(figure for one in told for figure in of_drift(one))
     over_steps = Findings(rows, figures, remarks(told))
-    flights = slow(replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED + (1 - STEPPED) * share)))
-    return over_steps + Findings(tuple(row for one in flights for row in one.rows()))
+    by_the_minute = replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED + (1 - STEPPED) * share))
+    return over_steps + slow_page.findings(by_the_minute)
 
 
 def rows_of(told: Drift) -> Iterator[Row]:
