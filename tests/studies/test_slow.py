@@ -15,13 +15,14 @@ from sensorfault.methods import drifting, ramp_glr, slope
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.studies.multistep.beats import Beats, compared
 from sensorfault.studies.multistep.flights import flight
-from sensorfault.studies.multistep.slow import RATES, SLOTS, Told, judge
+from sensorfault.studies.multistep.slow_judge import HALF, RATES, Told, judge
 
+SHORT = replace(slope.TEST, setting=drifting.Setting(window_s=30.0))  # for logs that are short
 MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}
 
 
 def judged(beats: Beats, test: drifting.DriftTest) -> Told:
-    return judge(beats, test, [replace(test.setting, slots=SLOTS)])[0]
+    return judge(beats, test, [test.setting])[0].told(HALF)
 
 
 @cache
@@ -45,27 +46,28 @@ def test_real_ramps_are_found_in_time_and_nothing_else_is(
 
 def test_a_ramp_on_beats_is_a_ramp_on_fixes() -> None:
     """The study lays a ramp on the beats' differences; the whole monitor, on the whole log, alarms at the same time."""
-    whole = compared(fly(700.0, seed=11, imu_hz=10.0, gnss_hz=5.0, barometer_hz=10.0, beat_hz=0.0).log)
-    short = Beats.of("slope", whole, drifting.DEFAULT)
-    told = judged(short, slope.TEST)
-    model = drifting.drift(whole.between(end_s=short.half), slope.TEST)
+    whole = compared(fly(300.0, seed=11, imu_hz=10.0, gnss_hz=5.0, barometer_hz=10.0, beat_hz=0.0).log)
+    short = Beats.of("slope", whole, SHORT.setting)
+    told = judged(short, SHORT)
+    model = drifting.drift(whole.between(end_s=short.half), SHORT)
     assert told.limit == pytest.approx(model.summary["limit"], rel=1e-6)
     onset = short.half + 5.0
     for i, rate in enumerate(RATES):
-        wrong = inject(whole, [Fault("drift", "gnss", "altitude", onset, 400.0, rate)]).log
+        wrong = inject(whole, [Fault("drift", "gnss", "altitude", onset, 200.0, rate)]).log
         events = [e for e in detect(model, wrong).events if e.start_s >= onset and e.kind != "miss"]
-        assert events[0].start_s - onset == pytest.approx(told.delay[i, 0], abs=1.1)
+        first = events[0].start_s if events else whole.time[-1]
+        assert first - onset == pytest.approx(told.delay[i, 0], abs=1.1)
+    assert told.missed[:, 0].tolist() == [True, False, False]  # 0.1 m/s is too slow for so short a window
 
 
 def test_a_silent_half_promises_nothing() -> None:
     """Two heights that agree to the bit but for a step in the second half: one false event, said so."""
-    time = np.arange(800.0)
-    random = np.random.default_rng(0)
-    noise = random.standard_normal(800)
-    value = np.column_stack([100 + noise + 8.0 * (time > 600), np.full(800, 50.0)])
+    time = np.arange(300.0)
+    noise = np.random.default_rng(0).standard_normal(300)
+    value = np.column_stack([100 + noise + 20.0 * (time > 220), np.full(300, 50.0)])
     channels = (Channel("altitude", "gnss", "m"), Channel("altitude", "barometer", "m"))
-    log = Log(time, value, np.ones((800, 2), bool), channels, (Sensor("gnss", 1.0), Sensor("barometer", 1.0)))
-    told = judged(Beats.of("slope", log, drifting.DEFAULT), slope.TEST)
-    assert told.false == 1
+    log = Log(time, value, np.ones((300, 2), bool), channels, (Sensor("gnss", 1.0), Sensor("barometer", 1.0)))
+    told = judged(Beats.of("slope", log, SHORT.setting), SHORT)
+    assert told.false in (1, 2)  # noise may part the run
     assert told.ratio > 3
-    assert 0.2 < told.far < 0.5
+    assert 0.1 < told.far < 0.3
