@@ -17,12 +17,13 @@ class _State(NamedTuple):
     speed: Float[Array, " W"]  # newest [m/s]
     spoken: Float[Array, " W"]  # when each witness last did [s]
     memory: Memory
+    excused: Bool[Array, ""]  # all heights, by the last sample: vertical speeds alone were accused
 
 
 class _Work(NamedTuple):
     state: _State
     fresh: Bool[Array, " C"]
-    excused: Bool[Array, ""]  # all heights: a vertical speed alone is accused
+    excused: Bool[Array, ""]  # now
 
 
 class Agreement(eqx.Module):
@@ -51,7 +52,9 @@ class Agreement(eqx.Module):
 
     def init(self) -> _State:
         none = jnp.zeros(len(self.columns))
-        return _State(none, none, jnp.full(none.shape, NEVER), Memory.empty(len(self.pairs), jnp.asarray(NEVER)))
+        return _State(
+            none, none, jnp.full(none.shape, NEVER), Memory.empty(len(self.pairs), jnp.asarray(NEVER)), none[0] > 0
+        )
 
     def evaluate(self, state: _State, residual: Residual) -> tuple[Score, _Work]:
         fresh, present = residual.extra
@@ -89,8 +92,9 @@ class Agreement(eqx.Module):
         ends = (good[i] | good[j]) & ~bad[i] & ~bad[j] & ~out[i] & ~out[j]
         after = memory.doubting(out[i] | out[j] | (memory.sure.any(axis=0) & (bad[i] | bad[j])), ends)
         # what a speed has added up to since is no longer near the reference of before
-        strayed = ends & (memory.doubted > RECENT * self.beat_s) & self._speaks()
-        return work.state._replace(memory=after.forgotten(strayed | (after.doubted > self.afresh_s)))
+        strayed = (ends & (memory.doubted > RECENT * self.beat_s)) | (work.state.excused & ~work.excused)
+        lost = (strayed & self._speaks()) | (after.doubted > self.afresh_s)
+        return work.state._replace(memory=after.forgotten(lost), excused=work.excused)
 
     def _sides(self) -> tuple[Int[Array, " P"], Int[Array, " P"]]:
         """The witnesses of each pair."""
@@ -127,7 +131,7 @@ class Agreement(eqx.Module):
         memory = state.memory.forgotten(broken[i] | broken[j] | hole)
         memory = memory._replace(began=jnp.where(hole, now, memory.began))
         spoken = jnp.where(fresh, now, state.spoken)
-        heard = _State(climbed, jnp.where(fresh, speed, state.speed), spoken, memory)
+        heard = _State(climbed, jnp.where(fresh, speed, state.speed), spoken, memory, state.excused)
         late = jnp.clip(now - spoken, 0.0, self.gap_s)
         height = jnp.where(speaks, climbed + heard.speed * late, value)
         return heard, height, jnp.where(speaks, now - spoken <= self.gap_s, present)
