@@ -35,7 +35,7 @@ def log() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def agreement() -> Agreement:
     return Agreement(
-        limit=jnp.ones((2, 3)),
+        limit=jnp.full((2, 3), 1e6),
         upward=jnp.asarray([0.0, 0.0, -1.0]),
         beat_s=jnp.asarray(BEAT_S),
         gap_s=jnp.asarray(GAP_S),
@@ -47,7 +47,7 @@ def agreement() -> Agreement:
 
 
 def told(doubted: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """By the package: gaps, which are known, and what is expected. Within `doubted` all is suspicious, yet taken in."""
+    """By the package: gaps, which are known, and what is expected. Within `doubted` all is kept out."""
     time, value, fresh = log()
     rows = samples(time, np.where(fresh, value, 0.0), fresh)
     suspect = np.zeros(ROWS, bool)
@@ -60,7 +60,7 @@ def told(doubted: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         sample = sample._replace(present=sample.fresh)
         found, work = part.evaluate(states[0], sample)
         _, pending = statistic.evaluate(states[1], found)
-        trust = Trust(sample.value, sample.fresh, sample.fresh & False, sample.fresh & ~doubt, sample.born)
+        trust = Trust(sample.value, sample.fresh & ~doubt, sample.fresh & False, sample.fresh & ~doubt, sample.born)
         gaps = pending.state.memory.gaps()
         return (part.update(work, trust), statistic.update(pending, trust)), (*gaps, found.expected)
 
@@ -134,14 +134,12 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
                         gaps[k, length, p] = np.mean(newest) - kept[p][length]
         suspicious = doubted.start <= k < doubted.stop
         for p, (i, j) in enumerate(PAIRS):
-            if fresh[k, i] or fresh[k, j]:
-                heights = [fresh[k, w] for w in (i, j) if w != DOWN]
-                if suspicious and any(heights) and any(x is not None for x in kept[p]):
-                    doubt[p] = max(doubt[p], 1e-6)
-                elif not suspicious:
-                    if doubt[p] > 10 * BEAT_S and 2 in (i, j):
-                        forget(p)
-                    doubt[p] = 0.0
+            if suspicious and any(fresh[k, w] for w in (i, j) if w != DOWN):
+                doubt[p] = max(doubt[p], 1e-6)
+            elif fresh[k, HEIGHT]:
+                if doubt[p] > 10 * BEAT_S and 2 in (i, j):
+                    forget(p)
+                doubt[p] = 0.0
     return gaps, fresh[:, HEIGHT]
 
 

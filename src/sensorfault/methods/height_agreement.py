@@ -28,6 +28,7 @@ AFRESH_S = 300.0  # a longer disagreement is taken for a witness set anew
 REBUILD_S = 120.0  # a height is believed for so long on another's word
 READMIT_S = 2.0
 MARGIN = 1.5  # on every limit, for what a flight of minutes has not shown
+FREE_M = 1e6  # a limit under which nobody is suspected
 FINEST_M = 0.3  # no two heights agree better
 LEAST_S = 60.0  # that can be compared, after the minute that fills the memory
 
@@ -42,7 +43,7 @@ def build(log: Log, seed: int, session: Session) -> Model:
     witnesses = _witnesses(log, found)
     columns, pairs = tuple(witnesses), tuple(combinations(range(len(witnesses)), 2))
     free = Agreement(
-        limit=jnp.ones((2, len(pairs))),
+        limit=jnp.full((2, len(pairs)), FREE_M),
         upward=jnp.asarray(list(witnesses.values())),
         beat_s=jnp.asarray(BEAT_S),
         gap_s=jnp.asarray(max(GAP_S, 3 * _period_s(log, columns[0]))),
@@ -100,7 +101,7 @@ def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray,
             f"{log.name} is {log.duration_s:.0f} s long, {NAME} needs {2 * LEAST_S:g} s of heights without a gap: one "
             "minute to remember and one to compare; give a longer flight."
         )
-    largest = np.maximum(np.where(tested, score, 0.0).max(axis=0), FINEST_M)
+    largest = np.maximum(FREE_M * np.where(tested, score, 0.0).max(axis=0), FINEST_M)
     return np.where(tested.any(axis=0), MARGIN * largest, np.inf).reshape(free.limit.shape)
 
 

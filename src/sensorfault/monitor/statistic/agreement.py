@@ -23,6 +23,7 @@ class _State(NamedTuple):
 class _Work(NamedTuple):
     state: _State
     fresh: Bool[Array, " C"]
+    suspect: Bool[Array, " W"]  # takes part in a disagreement, unless the heights are excused
     excused: Bool[Array, ""]  # now
 
 
@@ -75,22 +76,24 @@ class Agreement(eqx.Module):
         accused = named(over, covers, self.owner)
         # below these limits nobody disagrees; a lower one, set from outside, accuses both
         blame = covers & (accused | ~over.any())[None]
-        who = _of(accused, self.columns)
+        who, where = _of(accused, self.columns), (over[:, None] & covers).any(axis=0)
         excused = who.any() & ~(who & (self.upward == 0)).any()
+        suspect = _of(where, self.columns) & ~excused
         twice = jnp.concatenate([covers, covers]), jnp.concatenate([blame, blame]).astype(value.dtype)
-        return Score(value.ravel(), known.ravel(), *twice), _Work(state._replace(memory=memory), fresh, excused)
+        return Score(value.ravel(), known.ravel(), *twice), _Work(
+            state._replace(memory=memory), fresh, suspect, excused
+        )
 
     def update(self, work: _Work, trust: Trust) -> _State:
         memory = work.state.memory
-        # A height that is kept out doubts its pairs, and one under suspicion those that can be judged; what is believed
-        # ends the doubt. A vertical speed does not: what it has added up to stays wrong after it is right again.
-        new = _of(work.fresh, self.columns) & (self.upward == 0)
-        out = new & ~_of(trust.measured, self.columns)
-        bad = new & ~_of(trust.learn, self.columns) & ~work.excused
-        good = _of(trust.learn, self.columns) | work.excused
+        # A height that is kept out, or that disagrees, is in doubt until it is heard without. A vertical speed is not:
+        # what it has added up to stays wrong after it is right again.
+        new = _of(work.fresh, self.columns)
+        bad = (work.suspect | (new & ~_of(trust.measured, self.columns))) & (self.upward == 0)
         i, j = self._sides()
-        ends = (good[i] | good[j]) & ~bad[i] & ~bad[j] & ~out[i] & ~out[j]
-        after = memory.doubting(out[i] | out[j] | (memory.sure.any(axis=0) & (bad[i] | bad[j])), ends)
+        begins = bad[i] | bad[j]
+        ends = new[0] & ~begins
+        after = memory.doubting(begins, ends)
         # what a speed has added up to since is no longer near the reference of before
         strayed = (ends & (memory.doubted > RECENT * self.beat_s)) | (work.state.excused & ~work.excused)
         lost = (strayed & self._speaks()) | (after.doubted > self.afresh_s)
