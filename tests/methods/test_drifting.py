@@ -17,6 +17,7 @@ from sensorfault.methods.drifting import drift
 from sensorfault.model import Model
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.training.session import SILENT
+from sensorfault.types import FAULT
 
 RECIPES = (slope, mean_pair, ramp_glr, cusum)
 ONSET_S = 600.0
@@ -49,6 +50,18 @@ def test_a_slow_ramp_is_found_and_the_barometer_stands_in(module) -> None:
     at = (log.time > ONSET_S + 100.0) & (log.time < ONSET_S + 120.0) & log.fresh[:, 0]
     assert np.abs(wrong.value[at, 0] - log.value[at, 0]).min() > 49.0
     assert np.nanmax(np.abs(told.repaired[at, 0] - log.value[at, 0])) < 15.0
+
+
+@pytest.mark.parametrize("module", RECIPES)
+def test_a_drift_that_has_stopped_is_not_healed(module) -> None:
+    """The slope is over as soon as the window holds nothing but the offset; the height is as wrong as before."""
+    log = flight().between(400.0)
+    ramp = Fault("drift", "gnss", "altitude", ONSET_S, 50.0, 0.5)
+    wrong = inject(log, [ramp, Fault("bias", "gnss", "altitude", ONSET_S + 50.0, 500.0, 25.0)]).log
+    told = detect(fitted(module.NAME), wrong)
+    late = log.time > ONSET_S + 60.0
+    assert (told.channel[late, 0] == FAULT).all()
+    assert np.nanmax(np.abs(told.repaired[late, 0] - log.value[late, 0])) < 10.0
 
 
 @pytest.mark.parametrize("module", RECIPES)
