@@ -74,8 +74,8 @@ def _swept(told: Sequence[Slow]) -> tuple[str, ...]:
     windows = ", ".join(f"{w:g}" for w in sorted(set.intersection(*clean)))
     return (
         f"D-slow: the window of {drift_setting.DEFAULT.window_s:g} s was chosen on these two flights, which are all "
-        f"there are; the slope has no false event on either with windows of {windows} s, and longer windows promise delays "
-        "that a training flight of five minutes cannot vouch for.",
+        f"there are; the slope has no false event on either with windows of {windows} s, and longer windows promise "
+        "delays that a training flight of five minutes cannot vouch for.",
     )
 
 
