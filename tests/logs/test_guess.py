@@ -279,6 +279,15 @@ def test_unknown_names_are_kept_and_what_wanders_is_not_watched(tmp_path: Path) 
         ("satellites_used", "quality", "satellites_used", ""),
         ("Time::TimeStartup [ns]", "time", "time_time_startup", "ns"),
         ("control[1]", "", "control_1", ""),
+        ("DesRoll", "quality", "des_roll", ""),
+        ("ax_bias", "quality", "ax_bias", ""),
+        ("BarAlt", "height", "altitude", ""),
+        ("Spd", "speed", "speed", ""),
+        ("GCrs", "heading", "course", ""),
+        ("theta", "attitude", "pitch", ""),
+        ("psi", "heading", "yaw", ""),
+        ("pitch_of_quaternion [rad]", "attitude", "pitch", "rad"),
+        ("yaw_of_quaternion [rad]", "heading", "yaw", "rad"),
     ],
 )
 def test_names(column: str, kind: str, axis: str, unit: str) -> None:

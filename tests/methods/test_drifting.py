@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +17,9 @@ from sensorfault.methods.catalog import METHODS
 from sensorfault.methods.drifting import drift
 from sensorfault.model import Model
 from sensorfault.simulation.flapping_wing import fly
+from sensorfault.store import load, save
 from sensorfault.training.session import SILENT
+from sensorfault.types import FAULT
 
 RECIPES = (slope, mean_pair, ramp_glr, cusum)
 ONSET_S = 600.0
@@ -52,9 +55,31 @@ def test_a_slow_ramp_is_found_and_the_barometer_stands_in(module) -> None:
 
 
 @pytest.mark.parametrize("module", RECIPES)
+def test_a_drift_that_has_stopped_is_not_healed(module) -> None:
+    """The slope is over as soon as the window holds nothing but the offset; the height is as wrong as before."""
+    log = flight().between(400.0)
+    ramp = Fault("drift", "gnss", "altitude", ONSET_S, 50.0, 0.5)
+    wrong = inject(log, [ramp, Fault("bias", "gnss", "altitude", ONSET_S + 50.0, 500.0, 25.0)]).log
+    told = detect(fitted(module.NAME), wrong)
+    late = log.time > ONSET_S + 60.0
+    assert (told.channel[late, 0] == FAULT).all()
+    assert np.nanmax(np.abs(told.repaired[late, 0] - log.value[late, 0])) < 10.0
+
+
+@pytest.mark.parametrize("module", RECIPES)
 def test_a_healthy_flight_has_no_event(module) -> None:
     told = detect(fitted(module.NAME), flight().between(400.0))
     assert not [event for event in told.events if event.kind != "miss"]
+
+
+@pytest.mark.parametrize("module", RECIPES)
+def test_saved_and_loaded_it_says_the_same(module, tmp_path: Path) -> None:
+    log = flight().between(600.0, 760.0)
+    path = tmp_path / "m.sensorfault"
+    save(fitted(module.NAME), path)
+    before, after = detect(fitted(module.NAME), log), detect(load(path), log)
+    np.testing.assert_array_equal(before.traces[0].score, after.traces[0].score)
+    np.testing.assert_array_equal(before.channel, after.channel)
 
 
 def test_between_two_beats_the_verdict_stands() -> None:

@@ -11,30 +11,30 @@ from sensorfault.detector import detect
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Channel, Log, Sensor
-from sensorfault.methods import drifting, ramp_glr, slope
+from sensorfault.methods import drift_setting, drifting, ramp_glr, slope
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.studies.multistep.beats import Beats, compared
 from sensorfault.studies.multistep.flights import flight
 from sensorfault.studies.multistep.slow_judge import HALF, RATES, Told, judge
 
-SHORT = replace(slope.TEST, setting=drifting.Setting(window_s=30.0))  # for logs that are short
+SHORT = replace(slope.TEST, setting=drift_setting.Setting(window_s=30.0))  # for logs that are short
 MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}
 
 
-def judged(beats: Beats, test: drifting.DriftTest) -> Told:
+def judged(beats: Beats, test: drift_setting.DriftTest) -> Told:
     return judge(beats, test, [test.setting])[0].told(HALF)
 
 
 @cache
 def beats(name: str) -> Beats:
-    return Beats.of(name, compared(flight(name)), drifting.DEFAULT)
+    return Beats.of(name, compared(flight(name)), drift_setting.DEFAULT)
 
 
 @pytest.mark.real
 @pytest.mark.parametrize("test", [slope.TEST, ramp_glr.TEST], ids=lambda test: test.name)
 @pytest.mark.parametrize("name", MUST)
 def test_real_ramps_are_found_in_time_and_nothing_else_is(
-    name: str, test: drifting.DriftTest, real_data: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, test: drift_setting.DriftTest, real_data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
     told = judged(beats(name), test)

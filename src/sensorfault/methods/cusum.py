@@ -2,7 +2,8 @@
 
 import jax.numpy as jnp
 
-from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
+from sensorfault.methods.drift_setting import DriftTest, Setting, Statistic
+from sensorfault.methods.drifting import recipe
 from sensorfault.monitor.statistic.cusum import Cusum
 
 NAME = "cusum"

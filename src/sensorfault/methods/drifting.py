@@ -1,76 +1,32 @@
 """What the tests for a slow drift of a height share: the difference to the barometer, its limits, the monitor."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
 from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.drift_setting import DriftTest, Setting, Statistic
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.difference import Difference
+from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.statistic.cusum import Cusum
-from sensorfault.monitor.statistic.windowed import Measure, Windowed
 from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.numerics.blocks import EARLY
-from sensorfault.stage import Stage
 from sensorfault.training.difference import fit_difference
 from sensorfault.training.session import Session
 from sensorfault.training.tapes import score_tape
 from sensorfault.vehicles.fixed_wing import roles
 
-GAP_BEATS = 10.0  # without the receiver or the barometer for so long, a window begins anew
 REBUILD_S = 300.0  # what the barometer says stands in for so long: its offset wanders over minutes
 LEAST_WINDOWS = 1.5  # that a training flight must hold
+LEVEL = 2.0  # times the largest healthy difference: a drift that has stopped is over no other limit, yet no healthier
 CEILING = 1.25  # times the limit: a sum goes no higher
 PRESUMES = "presumes the barometer healthy"
 PROMISE = "none; the limit is a tenth above the largest score of the training flight"
-
-Statistic = Stage[Any, Any, Any, Any]
-
-
-@dataclass(frozen=True)
-class Setting:
-    """`window_s`: how long a test looks back. `margin`: on the largest healthy score of the training flight.
-
-    `memory_s`: how slowly the offset of the two heights is followed; inf: it is that of the first ten beats for good.
-    `lagging`: whether the lag of one height behind the other is learned. `slots` of a window; 0: one for each beat.
-    """
-
-    window_s: float = 130.0
-    beat_s: float = 1.0
-    margin: float = 1.1
-    memory_s: float = np.inf
-    lagging: bool = True
-    slots: int = 0
-
-    @property
-    def gap_s(self) -> Float[Array, ""]:
-        """A longer silence empties a window [s]."""
-        return jnp.asarray(GAP_BEATS * self.beat_s)
-
-    def windowed(self, measure: Measure, channels: int) -> Windowed:
-        """This measure of a window with a block for each beat."""
-        slots = self.slots or int(np.ceil((self.window_s / self.beat_s + 2) / (1 - EARLY)))
-        return Windowed(measure, jnp.asarray(self.window_s), self.gap_s, channels, slots)
-
-
-DEFAULT = Setting()
-
-
-@dataclass(frozen=True)
-class DriftTest:
-    """A test by name: its statistic of so many channels, and how it is set."""
-
-    name: str
-    statistic: Callable[[Setting, int], Statistic]
-    setting: Setting = DEFAULT
 
 
 def recipe(test: DriftTest, title: str, source: str) -> Recipe:
@@ -92,8 +48,9 @@ def drift(log: Log, test: DriftTest) -> Model:
     setting, channels = test.setting, len(log.channels)
     part = difference(test.name, log, setting)
     statistic = test.statistic(setting, channels)
-    deaf = monitor(log, part, statistic, Fixed(jnp.full(channels, jnp.inf)), setting)
-    score = score_tape(deaf, log)[0][:, part.measured]
+    off = Fixed(jnp.full(channels, jnp.inf))
+    deaf = monitor(log, part, statistic, off, setting, off)
+    score, level = (tape[:, part.measured] for tape in score_tape(deaf, log))
     if not np.isfinite(score).any():
         raise LogError(
             f"{log.name} is never watched for {setting.window_s:g} s without a break, over which {test.name} looks "
@@ -102,8 +59,12 @@ def drift(log: Log, test: DriftTest) -> Model:
     limit = setting.margin * float(np.nanmax(score))
     if isinstance(statistic, Cusum):
         statistic = replace(statistic, ceiling=jnp.full_like(statistic.ceiling, CEILING * limit))
-    limits = Fixed(jnp.asarray(np.where(np.arange(channels) == part.measured, limit, np.inf)))
-    return _model(test.name, log, monitor(log, part, statistic, limits, setting), part, limit, setting)
+    largest = LEVEL * float(np.nanmax(level))
+    own, lasting = (
+        Fixed(jnp.asarray(np.where(np.arange(channels) == part.measured, x, np.inf))) for x in (limit, largest)
+    )
+    heard = monitor(log, part, statistic, own, setting, lasting)
+    return _model(test.name, log, heard, part, {"limit": limit, "level": largest}, setting)
 
 
 def difference(name: str, log: Log, setting: Setting) -> Difference:
@@ -138,13 +99,22 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
     return fit_difference(part, log, setting.lagging)
 
 
-def monitor(log: Log, part: Difference, statistic: Statistic, threshold: Fixed, setting: Setting) -> Monitor:
-    """The height is out while its test is over the limit; the barometer with the learned offset stands in."""
+def monitor(
+    log: Log,
+    part: Difference,
+    statistic: Statistic,
+    threshold: Fixed,
+    setting: Setting,
+    level: Fixed | None = None,
+) -> Monitor:
+    """The height is out while its test is over the limit, or the difference itself over that of its `level`; the
+    barometer with the learned offset stands in.
+    """
     channels = len(log.channels)
     verdict_s = np.where(np.arange(channels) == part.measured, 1.5 * setting.beat_s, 0.0)
     return Monitor(
         residual=part,
-        branches=(Branch(statistic, threshold),),
+        branches=(Branch(statistic, threshold), *(() if level is None else (Branch(Absolute(), level),))),
         decision=Exceed(),
         recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(1.5 * setting.beat_s), channels),
         hold_s=jnp.asarray(np.maximum(hold_s(log), verdict_s)),
@@ -152,7 +122,7 @@ def monitor(log: Log, part: Difference, statistic: Statistic, threshold: Fixed, 
     )
 
 
-def _model(name: str, log: Log, heard: Monitor, part: Difference, limit: float, setting: Setting) -> Model:
+def _model(name: str, log: Log, heard: Monitor, part: Difference, limits: dict[str, float], setting: Setting) -> Model:
     mine = np.arange(len(log.channels)) == part.measured
     told = {
         "training_log": log.name,
@@ -160,7 +130,7 @@ def _model(name: str, log: Log, heard: Monitor, part: Difference, limit: float, 
         "reference": log.channels[part.reference].path,
         "lag_s": float(part.lag_s),
         "window_s": setting.window_s,
-        "limit": limit,
+        **limits,
         "not_watched": {c.path: "not compared" for c, m in zip(log.channels, mine, strict=True) if not m},
     }
     return Model(
@@ -168,7 +138,7 @@ def _model(name: str, log: Log, heard: Monitor, part: Difference, limit: float, 
         monitor=heard,
         channels=log.channels,
         sensors=log.sensors,
-        tests=tuple((name, channel.path) for channel in log.channels),
+        tests=tuple((test, channel.path) for test in (name, "level") for channel in log.channels),
         watched=tuple(mine.tolist()),
         tick_s=log.period_s,
         sigma=tuple(np.where(mine, np.sqrt(float(part.variance)), 1.0).tolist()),

@@ -1,6 +1,7 @@
 """A slow drift of a height, by the likelihood ratio of a ramp in its difference to the barometer."""
 
-from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
+from sensorfault.methods.drift_setting import DriftTest, Setting, Statistic
+from sensorfault.methods.drifting import recipe
 from sensorfault.monitor.statistic.ramp_glr import RampGlr
 
 NAME = "ramp-glr"

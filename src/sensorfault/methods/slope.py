@@ -1,6 +1,7 @@
 """A slow drift of a height, by the slope of its difference to the barometer over two minutes."""
 
-from sensorfault.methods.drifting import DriftTest, Setting, Statistic, recipe
+from sensorfault.methods.drift_setting import DriftTest, Setting, Statistic
+from sensorfault.methods.drifting import recipe
 from sensorfault.monitor.statistic.slope import Slope
 
 NAME = "slope"

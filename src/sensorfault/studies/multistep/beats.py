@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from sensorfault.logs.table import Log, Sensor
 from sensorfault.methods import drifting
-from sensorfault.methods.drifting import Setting
+from sensorfault.methods.drift_setting import Setting
 from sensorfault.monitor.residual.difference import Difference
 from sensorfault.training.tapes import extra_tape
 from sensorfault.vehicles.fixed_wing import roles

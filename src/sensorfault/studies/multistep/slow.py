@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
-from sensorfault.methods import drifting
+from sensorfault.methods import drift_setting
 from sensorfault.methods.catalog import METHODS
 from sensorfault.studies.findings import Effort, Row
 from sensorfault.studies.multistep.beats import Beats, compared
@@ -48,7 +48,7 @@ def slow(effort: Effort) -> list[Slow]:
 def _flight(name: str, share: tuple[float, float], effort: Effort) -> Slow:
     whole = compared(flight(name))
     found = Slow(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"))
-    beats, plain = (Beats.of(name, whole, replace(drifting.DEFAULT, lagging=lagging)) for lagging in (True, False))
+    beats, plain = (Beats.of(name, whole, replace(drift_setting.DEFAULT, lagging=lagging)) for lagging in (True, False))
     tests = {method: test for method, test in TESTS.items() if method in METHODS or not effort.quick}
     for i, (method, test) in enumerate(tests.items()):
         effort.tell(f"{name}: slow ramps, {method}", share[0] + share[1] * i / len(tests))

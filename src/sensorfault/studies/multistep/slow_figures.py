@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.methods import drifting, slope
+from sensorfault.methods import drift_setting, slope
 from sensorfault.studies.findings import Figure, Json
 from sensorfault.studies.multistep.slow import Slow
 from sensorfault.studies.multistep.slow_judge import RATES
@@ -62,7 +62,7 @@ def _flight(told: Slow) -> Figure:
         "yaxis": {"title": {"text": "|slope| [m/s]"}},
         "shapes": [mark],
     }
-    window = f"{drifting.DEFAULT.window_s:g} s"
+    window = f"{drift_setting.DEFAULT.window_s:g} s"
     caption = (
         f"Slope of receiver minus barometer over {window}; the limit comes from the first half of the flight, the ramp "
         "begins at the dashed line."
@@ -91,7 +91,8 @@ def _windows(told: Slow) -> tuple[Figure, ...]:
     }
     caption = (
         "Longer windows find slower ramps until the first half of a flight shows too few of them: below, the largest "
-        f"healthy score of the second half over that of the first, and above {drifting.DEFAULT.margin:g} false events."
+        "healthy score of the second half over that of the first, and false events above "
+        f"{drift_setting.DEFAULT.margin:g}."
     )
     return (
         Figure(

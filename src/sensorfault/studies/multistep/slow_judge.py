@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.methods import drifting
-from sensorfault.methods.drifting import DriftTest, Setting
+from sensorfault.methods.drift_setting import DriftTest, Setting
 from sensorfault.monitor.monitor import Monitor
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.studies.multistep.beats import Beats

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sensorfault.methods import drifting, ramp_glr, slope
+from sensorfault.methods import drift_setting, ramp_glr, slope
 from sensorfault.studies.findings import Effort, Findings
 from sensorfault.studies.multistep.slow import DRIFT, PLAIN, SHORT, WHERE, Slow, slow
 from sensorfault.studies.multistep.slow_figures import figures
@@ -26,7 +26,7 @@ def remarks(told: Sequence[Slow]) -> tuple[str, ...]:
 
 
 def _reading() -> str:
-    setting = drifting.DEFAULT
+    setting = drift_setting.DEFAULT
     return (
         f"D-slow: at {1 / setting.beat_s:g} Hz, receiver minus barometer, both averaged over a beat and brought to one "
         f"moment by the barometer's own speed. Limits are {setting.margin:g} times the largest healthy score of the "
@@ -73,9 +73,9 @@ def _swept(told: Sequence[Slow]) -> tuple[str, ...]:
     clean = [{w for w, one in each.windows[slope.NAME].items() if one.false == 0} for each in told]
     windows = ", ".join(f"{w:g}" for w in sorted(set.intersection(*clean)))
     return (
-        f"D-slow: the window of {drifting.DEFAULT.window_s:g} s was chosen on these two flights, which are all there "
-        f"are; the slope has no false event on either with windows of {windows} s, and longer windows promise delays "
-        "that a training flight of five minutes cannot vouch for.",
+        f"D-slow: the window of {drift_setting.DEFAULT.window_s:g} s was chosen on these two flights, which are all "
+        f"there are; the slope has no false event on either with windows of {windows} s, and longer windows promise "
+        "delays that a training flight of five minutes cannot vouch for.",
     )
 
 

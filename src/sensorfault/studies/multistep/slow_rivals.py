@@ -5,7 +5,7 @@ import sensorfault._jax  # isort: skip  # noqa: F401
 import jax.numpy as jnp
 
 from sensorfault.methods import cusum, mean_pair, ramp_glr, slope
-from sensorfault.methods.drifting import DriftTest, Setting, Statistic
+from sensorfault.methods.drift_setting import DriftTest, Setting, Statistic
 from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
 from sensorfault.monitor.statistic.ewma import Ewma
 from sensorfault.monitor.statistic.windowed_chi_square import WindowedChiSquare
