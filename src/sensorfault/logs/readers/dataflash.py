@@ -1,7 +1,9 @@
 """ArduPilot DataFlash logs (`.bin`): one table for each kind of message, by pymavlink."""
 
+import os
 from collections import defaultdict
-from contextlib import closing, redirect_stderr, redirect_stdout
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout
 from functools import lru_cache
 from io import StringIO
 from pathlib import Path
@@ -52,7 +54,7 @@ def _messages(path: Path) -> tuple[dict[str, list[dict[str, Any]]], int]:
 
     rows: dict[str, list[dict[str, Any]]] = defaultdict(list)
     read = 0
-    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # pymavlink's own remarks go nowhere
+    with _silent():
         try:
             with closing(DFReader_binary(str(path))) as reader:
                 while (message := reader.recv_msg()) is not None:
@@ -66,6 +68,21 @@ def _messages(path: Path) -> tuple[dict[str, list[dict[str, Any]]], int]:
                 f"{path}: the DataFlash log is damaged ({reason}); copy it from the autopilot again."
             ) from None
     return rows, read
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """What pymavlink remarks, in Python and below, goes nowhere: what is wrong is told in one sentence."""
+    kept = [os.dup(stream) for stream in (1, 2)]
+    with open(os.devnull, "w") as nowhere, redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        try:
+            for stream in (1, 2):
+                os.dup2(nowhere.fileno(), stream)
+            yield
+        finally:
+            for stream, own in zip((1, 2), kept, strict=True):
+                os.dup2(own, stream)
+                os.close(own)
 
 
 def _table(path: Path, messages: list[dict[str, Any]]) -> Source | None:
