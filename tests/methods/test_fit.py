@@ -42,7 +42,8 @@ def default() -> Model:
 
 def test_the_catalog() -> None:
     of_motion = {"motion-deficit", "bicycle-kalman", "side-force", "car"}
-    of_height = {"multistep-observer", "kinematic-observer", "cusum", "ramp-glr", "slope", "mean-pair"}
+    slow = {"cusum", "ramp-glr", "slope", "mean-pair"}
+    of_height = {"multistep-observer", "kinematic-observer", "height-agreement", "drone", *slow}
     others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion, *of_height}
     assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, *others}
     assert DEFAULT == "relative-conditioning"
