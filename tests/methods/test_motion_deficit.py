@@ -189,3 +189,16 @@ def test_what_it_cannot_run_on_is_said_in_one_sentence() -> None:
     polar[:, LATITUDE] = np.pi / 2
     with pytest.raises(LogError, match="pole"):
         motion_deficit("motion-deficit", replace(there, value=polar))
+
+
+def test_a_receiver_of_one_hertz() -> None:
+    """Its horizons are one and four of its periods; no fix comes within a quarter of a second."""
+    slow = drive(300.0, seed=3, imu_hz=10.0, gnss_hz=1.0).log.select(PATHS)
+    model = motion_deficit("motion-deficit", slow.between(end_s=FIRST), True)
+    assert [test for test, _ in model.tests[:2]] == ["deficit over 0.9 s", "deficit over 3.6 s"]
+    part = slow.between(FIRST, LAST)
+    assert not (detect(model, part).channel[:, LATITUDE] == FAULT).any()
+    found = position_faults(
+        detect(model, inject(part, [Fault("bias", "gnss", "latitude", 240.0, 10.0, 40 * METRE)]).log)
+    )
+    assert 240.0 <= found.min() < 242.0

@@ -12,6 +12,7 @@ from sensorfault.types import NEVER, Residual, Sample, Trust
 class _Window(NamedTuple):
     rows: Float[Array, "W C"]  # the newest first [SI]
     seen: Float[Array, " C"]  # when each channel was last measured and trusted [s]
+    filled: Float[Array, " C"]  # rows of its window since it began (anew), W at most
 
 
 class _Work(NamedTuple):
@@ -29,6 +30,7 @@ class Conditioning(eqx.Module):
     its last trusted value takes the place, and its word counts for less by the time: `drift` [SI^2/s] up to `most`
     [SI^2] of variance, which its weight in the window hands on to the others. So a start, a gap in the clock and a long
     fault all end alike: the first value after them is accepted if the channel was ever like that, and fills its window.
+    How it moves is told only by W rows after that; until then it is not valid.
     """
 
     weights: Float[Array, "C WC"]  # of the rows of the window, the newest first
@@ -42,7 +44,8 @@ class Conditioning(eqx.Module):
     lags: int = eqx.field(static=True)
 
     def init(self) -> _Window:
-        return _Window(jnp.tile(self.center, (self.lags, 1)), jnp.full(self.center.shape, NEVER, float))
+        shape = self.center.shape
+        return _Window(jnp.tile(self.center, (self.lags, 1)), jnp.full(shape, NEVER, float), jnp.zeros(shape))
 
     def evaluate(self, window: _Window, sample: Sample) -> tuple[Residual, _Work]:
         seen = jnp.where(sample.born, NEVER, window.seen)
@@ -59,6 +62,7 @@ class Conditioning(eqx.Module):
         variance = (jnp.eye(len(value)) * cov).sum(axis=1)
         e = jnp.where(self.watched, value - expected, 0.0)
         most = self.bound * jnp.sqrt(variance)
+        known = window.filled >= self.lags
         residual = Residual(
             time=sample.time,
             value=e,
@@ -66,19 +70,21 @@ class Conditioning(eqx.Module):
             measured=value,
             expected=expected,
             noise=variance,
-            valid=sample.fresh & self.watched,
+            valid=sample.fresh & self.watched & known,
             born=sample.born,
         )
-        bounded = jnp.where(self.watched, expected + jnp.clip(e, -most, most), value)
+        bounded = jnp.where(self.watched & known, expected + jnp.clip(e, -most, most), value)
         return residual, _Work(window._replace(seen=seen), sample.time, value, bounded)
 
     def update(self, pending: _Work, trust: Trust) -> _Window:
-        (rows, seen), time, value, bounded = pending
+        (rows, seen, filled), time, value, bounded = pending
         # Nothing measured is left in the channel's window (or the clock went back): begin it anew.
         away = time - seen
         anew = trust.measured & ((away > (self.lags + 0.5) * self.tick_s) | (away < 0))
         newest = jnp.where(trust.measured, bounded, jnp.where(trust.filled, trust.value, rows[0]))
         shifted = jnp.where(self.watched[None], jnp.concatenate([newest[None], rows[:-1]]), rows)
         return _Window(
-            jnp.where((anew & self.watched)[None], value[None], shifted), jnp.where(trust.measured, time, seen)
+            rows=jnp.where((anew & self.watched)[None], value[None], shifted),
+            seen=jnp.where(trust.measured, time, seen),
+            filled=jnp.where(anew, 1.0, jnp.where(filled > 0, jnp.minimum(filled + 1, self.lags), 0.0)),
         )
