@@ -60,7 +60,7 @@ def joint(name: str) -> Case:
     rows = samples(unseen.time, unseen.value, unseen.fresh)
     lie = 40 * log.value.std(axis=0)
     monitor = SMALL.get(name, METHODS[name].build)(log.between(end_s=240.0), 0, Session()).monitor
-    back_s = float(monitor.recovery.readmit_s)
+    back_s = float(monitor.recovery.readmit_s) + log.period_s * getattr(monitor.residual, "lags", 0)
     return Case(name, monitor, rows, lie, back_s, permuted=functools.partial(_permuted, monitor))
 
 
