@@ -1,11 +1,11 @@
-"""Paper D: ramps on a height, observed over 1 to 15 steps on two real flights; then slow drift by the minute."""
+"""Paper D: ramps on a height, observed over 1 to 15 steps on two real flights; slow drift by the minute; who drifts."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 from sensorfault.studies.data import real
 from sensorfault.studies.findings import Effort, Findings, Row
-from sensorfault.studies.multistep import slow_page
+from sensorfault.studies.multistep import slow_page, who
 from sensorfault.studies.multistep.contenders import NETWORK
 from sensorfault.studies.multistep.drift import PRINTED, Drift, drifts
 from sensorfault.studies.multistep.figures import SLOW, of_drift
@@ -32,7 +32,7 @@ def study(effort: Effort) -> Findings:
     figures = tuple(figure for one in told for figure in of_drift(one))
     over_steps = Findings(rows, figures, remarks(told))
     by_the_minute = replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED + (1 - STEPPED) * share))
-    return over_steps + slow_page.findings(by_the_minute)
+    return over_steps + slow_page.findings(by_the_minute) + who.findings(by_the_minute)
 
 
 def rows_of(told: Drift) -> Iterator[Row]:
