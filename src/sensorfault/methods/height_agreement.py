@@ -61,7 +61,8 @@ def build(log: Log, seed: int, session: Session) -> Model:
     )
     session.tell("measuring how far healthy heights move apart")
     limit = _limit(log, residual, free)
-    variance = (limit[0, 0] / 3) ** 2  # of the first two witnesses, which are the heights if there are two
+    # of the first two witnesses, which are the heights if there are two
+    variance = (limit[0, 0] / 3) ** 2 if np.isfinite(limit[0, 0]) else 1.0
     residual = eqx.tree_at(lambda r: r.variance, residual, jnp.asarray(variance))
     agreement = eqx.tree_at(lambda s: s.limit, free, jnp.asarray(limit))
     paths = [log.channels[c].path for c in columns]
