@@ -119,13 +119,12 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
                     beats[p].append((mean, mean is not None and not held))
                     doubt[p] += (time[k] - began) if held else 0.0
                     now[p] = []
-                    before = [mean for mean, clean in beats[p][:-2] if clean]
+                    before = [mean for mean, _ in beats[p][:-2] if mean is not None]
                     oldest = [mean for mean in past[p][:10] if mean is not None]
-                    if not held:
-                        if len(before) >= 4:
-                            kept[p][0] = float(np.mean(before))
-                        if len(oldest) >= 5:
-                            kept[p][1] = float(np.mean(oldest))
+                    if len(before) >= 4 and not (held and any(clean for _, clean in beats[p])):
+                        kept[p][0] = float(np.mean(before))
+                    if len(oldest) >= 5 and not held:
+                        kept[p][1] = float(np.mean(oldest))
                 began = time[k]
             for p in range(3):
                 for length, many in ((0, 2), (1, 10)):
@@ -143,7 +142,7 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
     return gaps, fresh[:, HEIGHT]
 
 
-@pytest.mark.parametrize("doubted", [slice(0, 0), slice(300, 312)])
+@pytest.mark.parametrize("doubted", [slice(0, 0), slice(300, 312), slice(300, 390)])
 def test_gaps(doubted: slice) -> None:
     gap, known, _ = told(doubted)
     gaps, fixes = by_hand(doubted)

@@ -29,7 +29,7 @@ REBUILD_S = 120.0  # a height is believed for so long on another's word
 READMIT_S = 2.0
 MARGIN = 1.5  # on every limit, for what a flight of minutes has not shown
 FREE_M = 1e6  # a limit under which nobody is suspected
-FINEST_M = 0.3  # no two heights agree better
+FINEST_M = np.array([1.5, 3.0])  # of a jump and of a drift: healthy heights move apart by so much on any flight
 LEAST_S = 60.0  # that can be compared, after the minute that fills the memory
 
 
@@ -102,8 +102,9 @@ def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray,
             f"{log.name} is {log.duration_s:.0f} s long, {NAME} needs {2 * LEAST_S:g} s of heights without a gap: one "
             "minute to remember and one to compare; give a longer flight."
         )
-    largest = np.maximum(FREE_M * np.where(tested, score, 0.0).max(axis=0), FINEST_M)
-    return np.where(tested.any(axis=0), MARGIN * largest, np.inf).reshape(free.limit.shape)
+    largest = (FREE_M * np.where(tested, score, 0.0).max(axis=0)).reshape(free.limit.shape)
+    known = tested.any(axis=0).reshape(free.limit.shape)
+    return np.where(known, MARGIN * np.maximum(largest, FINEST_M[:, None]), np.inf)
 
 
 def _witnesses(log: Log, found: Roles) -> dict[int, float]:

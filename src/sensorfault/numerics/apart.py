@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 RECENT, PAST, OLDEST = 10, 50, 10  # beats: the newest, those remembered before, and of these the reference's
-NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be believed
+NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be there
 LEAST_S = 1e-6  # of a doubt that has just begun
 
 
@@ -16,7 +16,8 @@ class Memory(NamedTuple):
     """Of P pairs: the beat that is going on, the means of those before, and the references in use.
 
     `kept` and `sure`: the mean difference some seconds ago, and a minute ago, and whether it is known. While a pair is
-    doubted both stay as they are, and take the place of what would be remembered.
+    doubted the one of a minute ago stays as it is, and takes the place of what would be remembered; the other stays for
+    as long as the newest beats last.
     """
 
     began: Float[Array, ""]  # this beat [s]
@@ -63,9 +64,11 @@ class Memory(NamedTuple):
             trusted=_shifted(self.trusted, clean | (doubtful & self.sure[1])),
             doubted=jnp.where(held, self.doubted + (now - self.began), 0.0),
         )
-        before, these = _mean(after.recent[:-NEWEST], after.clean[:-NEWEST])
+        before, these = _mean(after.recent[:-NEWEST], after.lived[:-NEWEST])
         oldest, those = _mean(after.past[:OLDEST], after.trusted[:OLDEST])
-        anew = jnp.stack([these >= ENOUGH, those >= OLDEST / 2]) & ~held[None]
+        # the one of some seconds ago stays for no longer than they take: a drift has moved it before it was seen
+        stays = jnp.stack([held & after.clean.any(axis=0), held])
+        anew = jnp.stack([these >= ENOUGH, those >= OLDEST / 2]) & ~stays
         kept = jnp.where(anew, jnp.stack([before, oldest]), self.kept)
         return after._replace(kept=kept, sure=self.sure | anew)
 
