@@ -119,9 +119,9 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
                     beats[p].append((mean, mean is not None and not held))
                     doubt[p] += (time[k] - began) if held else 0.0
                     now[p] = []
-                    before = [mean for mean, _ in beats[p][:-2] if mean is not None]
+                    before = [mean for mean, clean in beats[p][:-2] if clean]
                     oldest = [mean for mean in past[p][:10] if mean is not None]
-                    if len(before) >= 4 and not (held and any(clean for _, clean in beats[p])):
+                    if len(before) >= 4 and not held:
                         kept[p][0] = float(np.mean(before))
                     if len(oldest) >= 5 and not held:
                         kept[p][1] = float(np.mean(oldest))
@@ -131,14 +131,22 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
                     newest = [b[0] for b in beats[p][-many:] if b[0] is not None]
                     if kept[p][length] is not None and len(newest) >= (many + 1) // 2:
                         gaps[k, length, p] = np.mean(newest) - kept[p][length]
+        known = np.isfinite(gaps[k, 1, 0]) and fresh[k, BARO]
+        healed = known and doubt[0] > 10 * BEAT_S  # nothing is over these limits
         suspicious = doubted.start <= k < doubted.stop
         for p, (i, j) in enumerate(PAIRS):
             if suspicious and any(fresh[k, w] for w in (i, j) if w != DOWN):
+                if doubt[p] == 0:
+                    beats[p] = [(mean, False) for mean, _ in beats[p]]
+                    past[p] = past[p] if DOWN in (i, j) else [kept[p][1]] * 50
                 doubt[p] = max(doubt[p], 1e-6)
             elif fresh[k, HEIGHT]:
                 if doubt[p] > 10 * BEAT_S and 2 in (i, j):
                     forget(p)
                 doubt[p] = 0.0
+        if healed:
+            forget(1)
+            forget(2)
     return gaps, fresh[:, HEIGHT]
 
 

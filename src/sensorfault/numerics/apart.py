@@ -8,7 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 RECENT, PAST, OLDEST = 10, 50, 10  # beats: the newest, those remembered before, and of these the reference's
-NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be there
+NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be believed
+FARTHEST = 1e9  # [m]
 LEAST_S = 1e-6  # of a doubt that has just begun
 
 
@@ -16,8 +17,7 @@ class Memory(NamedTuple):
     """Of P pairs: the beat that is going on, the means of those before, and the references in use.
 
     `kept` and `sure`: the mean difference some seconds ago, and a minute ago, and whether it is known. While a pair is
-    doubted the one of a minute ago stays as it is, and takes the place of what would be remembered; the other stays for
-    as long as the newest beats last.
+    doubted both stay as they are, and the latter takes the place of what would be remembered.
     """
 
     began: Float[Array, ""]  # this beat [s]
@@ -64,11 +64,9 @@ class Memory(NamedTuple):
             trusted=_shifted(self.trusted, clean | (doubtful & self.sure[1])),
             doubted=jnp.where(held, self.doubted + (now - self.began), 0.0),
         )
-        before, these = _mean(after.recent[:-NEWEST], after.lived[:-NEWEST])
+        before, these = _mean(after.recent[:-NEWEST], after.clean[:-NEWEST])
         oldest, those = _mean(after.past[:OLDEST], after.trusted[:OLDEST])
-        # the one of some seconds ago stays for no longer than they take: a drift has moved it before it was seen
-        stays = jnp.stack([held & after.clean.any(axis=0), held])
-        anew = jnp.stack([these >= ENOUGH, those >= OLDEST / 2]) & ~stays
+        anew = jnp.stack([these >= ENOUGH, those >= OLDEST / 2]) & ~held[None]
         kept = jnp.where(anew, jnp.stack([before, oldest]), self.kept)
         return after._replace(kept=kept, sure=self.sure | anew)
 
@@ -83,10 +81,25 @@ class Memory(NamedTuple):
             known.append(sure & (many >= length / 2))
         return jnp.stack(gaps), jnp.stack(known)
 
-    def doubting(self, begins: Bool[Array, " P"], ends: Bool[Array, " P"]) -> "Memory":
-        """With doubts that begin, go on or end."""
-        begun = jnp.maximum(self.doubted, LEAST_S)
-        return self._replace(doubted=jnp.where(begins, begun, jnp.where(ends, 0.0, self.doubted)))
+    def since(self) -> Float[Array, " P"]:
+        """How far the newest two beats are from those of a minute ago [m]; as far as can be where that is not known."""
+        newest, _ = _mean(self.recent[-NEWEST:], self.lived[-NEWEST:])
+        return jnp.where(self.sure[1], jnp.abs(newest - self.kept[1]), FARTHEST)
+
+    def doubting(self, begins: Bool[Array, " P"], ends: Bool[Array, " P"], steady: Bool[Array, " P"]) -> "Memory":
+        """With doubts that begin, go on or end.
+
+        What came lately may have been wrong before it was doubted: of the newest beats none is believed then, and of
+        those before them none but the reference, where the pair is `steady` and it does not age.
+        """
+        starts = begins & (self.doubted <= 0)
+        anew = (starts & steady)[None]
+        return self._replace(
+            clean=self.clean & ~starts[None],
+            past=jnp.where(anew, self.kept[1][None], self.past),
+            trusted=jnp.where(anew, self.sure[1][None], self.trusted),
+            doubted=jnp.where(begins, jnp.maximum(self.doubted, LEAST_S), jnp.where(ends, 0.0, self.doubted)),
+        )
 
     def forgotten(self, pairs: Bool[Array, " P"]) -> "Memory":
         """Nothing remembered of these pairs."""

@@ -25,6 +25,7 @@ class _Work(NamedTuple):
     fresh: Bool[Array, " C"]
     suspect: Bool[Array, " W"]  # takes part in a disagreement, unless the heights are excused
     excused: Bool[Array, ""]  # now
+    healed: Bool[Array, ""]  # two heights agree again after a long doubt
 
 
 class Agreement(eqx.Module):
@@ -66,12 +67,15 @@ class Agreement(eqx.Module):
         memory = state.memory.heard(there[i] & there[j] & lead, height[i] - height[j])
         memory = memory.beaten(lead & (now - memory.began >= (1 - EARLY) * self.beat_s), now)
         gap, known = memory.gaps()
+        # Two heights that are where they were a minute ago have not jumped: a drift may have moved the later reference.
+        jump, drift = jnp.abs(gap)
+        jump = jnp.where(self._speaks(), jump, jnp.minimum(jump, memory.since()))
         covers = self._covers()
         out = (covers & jnp.broadcast_to(jnp.asarray(residual.out), fresh.shape)[None]).any(axis=1)
         here = _of(present, self.columns)
         known = known & (here[i] & here[j] & here[0] & ~out)[None]
         growth = jnp.where(self._speaks(), 1 + memory.doubted / ((RECENT + PAST) * self.beat_s), 1.0)
-        value = jnp.abs(gap) / (self.limit * growth[None])
+        value = jnp.stack([jump, drift]) / (self.limit * growth[None])
         over = (known & (value > 1)).any(axis=0)
         accused = named(over, covers, self.owner)
         # below these limits nobody disagrees; a lower one, set from outside, accuses both
@@ -79,10 +83,10 @@ class Agreement(eqx.Module):
         who, where = _of(accused, self.columns), (over[:, None] & covers).any(axis=0)
         excused = who.any() & ~(who & (self.upward == 0)).any()
         suspect = _of(where, self.columns) & ~excused
+        healed = (~self._speaks() & known[1] & ~over & (memory.doubted > RECENT * self.beat_s)).any()
         twice = jnp.concatenate([covers, covers]), jnp.concatenate([blame, blame]).astype(value.dtype)
-        return Score(value.ravel(), known.ravel(), *twice), _Work(
-            state._replace(memory=memory), fresh, suspect, excused
-        )
+        work = _Work(state._replace(memory=memory), fresh, suspect, excused, healed)
+        return Score(value.ravel(), known.ravel(), *twice), work
 
     def update(self, work: _Work, trust: Trust) -> _State:
         memory = work.state.memory
@@ -93,9 +97,10 @@ class Agreement(eqx.Module):
         i, j = self._sides()
         begins = bad[i] | bad[j]
         ends = new[0] & ~begins
-        after = memory.doubting(begins, ends)
+        after = memory.doubting(begins, ends, ~self._speaks())
         # what a speed has added up to since is no longer near the reference of before
-        strayed = (ends & (memory.doubted > RECENT * self.beat_s)) | (work.state.excused & ~work.excused)
+        strayed = ends & (memory.doubted > RECENT * self.beat_s)
+        strayed = strayed | work.healed | (work.state.excused & ~work.excused)
         lost = (strayed & self._speaks()) | (after.doubted > self.afresh_s)
         return work.state._replace(memory=after.forgotten(lost), excused=work.excused)
 
