@@ -20,7 +20,7 @@ README = (Path(__file__).parents[2] / "README.md").read_text()
 VERBS = sorted(cli.commands)
 # What a verb of its kind cannot do without.
 OPTIONS = {
-    "demo": {"--out", "--method", "--seed", "--json"},
+    "demo": {"--out", "--flight", "--method", "--seed", "--json"},
     "init": {"--out", "--force"},
     "fit": {"--vehicle", "--method", "--out", "--held-out", "--seed", "--json"},
     "detect": {"--vehicle", "--model", "--method", "--learn", "--report", "--seed", "--json"},

@@ -174,3 +174,14 @@ def test_json_has_no_nan(run: Run, drive: Path, car: Path) -> None:
 def test_the_same_words_give_the_same_answer(run: Run, drive: Path) -> None:
     one, two = (run("detect", drive, "--learn", 0.6, "--seed", 3, "--json", "-").out for _ in range(2))
     assert json.loads(one) == json.loads(two)
+
+
+def test_a_flight_as_a_demo(run: Run, tmp_path: Path) -> None:
+    """The receiver's height drifts, jumps; the barometer falls silent. All three are found, and nobody else accused."""
+    said = run("demo", "--flight", "--out", "wing", "--json", "wing.json")
+    assert said.code == 0
+    assert "3 of 3 injected faults found" in said.err + said.out
+    events = json.loads((tmp_path / "wing.json").read_text())["events"]
+    assert {event["sensor"] for event in events} == {"gnss", "barometer"}
+    assert (tmp_path / "wing" / "flight.csv").exists()
+    assert (tmp_path / "wing" / "report.html").exists()

@@ -143,6 +143,8 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
             elif fresh[k, HEIGHT]:
                 if doubt[p] > 10 * BEAT_S and 2 in (i, j):
                     forget(p)
+                if doubt[p] > 0:
+                    kept[p][0] = None
                 doubt[p] = 0.0
         if healed:
             forget(1)

@@ -90,14 +90,16 @@ class Memory(NamedTuple):
         """With doubts that begin, go on or end.
 
         What came lately may have been wrong before it was doubted: of the newest beats none is believed then, and of
-        those before them none but the reference, where the pair is `steady` and it does not age.
+        those before them none but the reference, where the pair is `steady` and it does not age. After a doubt what a
+        jump is from has to be learned anew.
         """
-        starts = begins & (self.doubted <= 0)
+        starts, over = begins & (self.doubted <= 0), ends & ~begins & (self.doubted > 0)
         anew = (starts & steady)[None]
         return self._replace(
             clean=self.clean & ~starts[None],
             past=jnp.where(anew, self.kept[1][None], self.past),
             trusted=jnp.where(anew, self.sure[1][None], self.trusted),
+            sure=jnp.stack([self.sure[0] & ~over, self.sure[1]]),
             doubted=jnp.where(begins, jnp.maximum(self.doubted, LEAST_S), jnp.where(ends, 0.0, self.doubted)),
         )
 

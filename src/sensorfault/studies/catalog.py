@@ -47,7 +47,11 @@ STUDIES: dict[str, Study] = {
             "Incipient drift of an aircraft's height, seen by an observer of many steps",
             "Wang S. et al.",
             multistep,
-            {"D": "Ramps, observed over N steps", "D-slow": "Slow drift against a barometer, over a minute or more"},
+            {
+                "D": "Ramps, observed over N steps",
+                "D-slow": "Slow drift against a barometer, over a minute or more",
+                "D-who": "Who is accused when a height drifts",
+            },
         ),
     )
 }

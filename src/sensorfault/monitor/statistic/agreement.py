@@ -67,15 +67,15 @@ class Agreement(eqx.Module):
         memory = state.memory.heard(there[i] & there[j] & lead, height[i] - height[j])
         memory = memory.beaten(lead & (now - memory.began >= (1 - EARLY) * self.beat_s), now)
         gap, known = memory.gaps()
-        # Two heights that are where they were a minute ago have not jumped: a drift may have moved the later reference.
-        jump, drift = jnp.abs(gap)
-        jump = jnp.where(self._speaks(), jump, jnp.minimum(jump, memory.since()))
         covers = self._covers()
         out = (covers & jnp.broadcast_to(jnp.asarray(residual.out), fresh.shape)[None]).any(axis=1)
         here = _of(present, self.columns)
         known = known & (here[i] & here[j] & here[0] & ~out)[None]
         growth = jnp.where(self._speaks(), 1 + memory.doubted / ((RECENT + PAST) * self.beat_s), 1.0)
-        value = jnp.stack([jump, drift]) / (self.limit * growth[None])
+        jump, drift = jnp.abs(gap) / (self.limit * growth[None])
+        # After a long doubt what a jump is from may be wrong; two heights that have not drifted have not jumped either.
+        long = (memory.doubted > RECENT * self.beat_s) & ~self._speaks()
+        value = jnp.stack([jnp.where(long, jnp.minimum(jump, memory.since() / self.limit[1]), jump), drift])
         over = (known & (value > 1)).any(axis=0)
         accused = named(over, covers, self.owner)
         # below these limits nobody disagrees; a lower one, set from outside, accuses both
@@ -83,7 +83,7 @@ class Agreement(eqx.Module):
         who, where = _of(accused, self.columns), (over[:, None] & covers).any(axis=0)
         excused = who.any() & ~(who & (self.upward == 0)).any()
         suspect = _of(where, self.columns) & ~excused
-        healed = (~self._speaks() & known[1] & ~over & (memory.doubted > RECENT * self.beat_s)).any()
+        healed = (long & known[1] & ~over).any()
         twice = jnp.concatenate([covers, covers]), jnp.concatenate([blame, blame]).astype(value.dtype)
         work = _Work(state._replace(memory=memory), fresh, suspect, excused, healed)
         return Score(value.ravel(), known.ravel(), *twice), work
