@@ -125,6 +125,26 @@ def test_unknown_which_when_nobody_else_knows() -> None:
             }
 
 
+def test_a_receiver_is_one_even_where_the_log_has_its_height_and_speed_as_two() -> None:
+    """As `init` guesses. Else the barometer alone would explain that both differ from it."""
+    whole = log(GNSS, DOWN, BARO)
+    height, down, baro = whole.channels
+    apart = replace(
+        whole,
+        channels=(replace(height, sensor="gps_height"), replace(down, sensor="gps_velocity"), baro),
+        sensors=tuple(Sensor(name, 0.2) for name in ("gps_height", "gps_velocity", "barometer")),
+    )
+    model = build(apart.between(end_s=FITTED_S), 0, SILENT)
+    faults = [
+        Fault("drift", "gps_height", "altitude", ONSET_S, LASTS_S, 1.0),
+        Fault("bias", "gps_velocity", "down", ONSET_S, LASTS_S, -1.0),
+    ]
+    told = detect(model, inject(apart.between(FITTED_S), faults).log)
+    assert "barometer" not in {event.sensor for event in told.events}
+    during = (told.log.time > ONSET_S + 15.0) & (told.log.time < ONSET_S + LASTS_S - 1.0)
+    assert (told.sample[during] == FAULT).all()
+
+
 def test_two_of_one_sensor_that_disagree_accuse_it() -> None:
     """Without a barometer the receiver's own speed tells that something is wrong with the receiver."""
     _, told = lied(drift("gnss", 1.0), paths=(GNSS, DOWN))

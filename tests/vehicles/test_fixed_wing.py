@@ -19,7 +19,7 @@ def test_who_says_how_high_it_flies() -> None:
     found = roles(
         log(
             ("barometer", "altitude", "m"),
-            ("estimate", "down", "m/s"),
+            ("ins", "down", "m/s"),
             ("gnss", "altitude", "mm"),
             ("gnss", "down", "m/s"),
             ("control", "elevator", ""),
@@ -40,6 +40,23 @@ def test_a_height_of_nobody_known_is_the_receivers() -> None:
     assert (found.height, found.barometric, found.vertical, found.upward) == (1, 0, 2, 1.0)
     alone = roles(log(("barometer", "altitude", "m"), ("state", "pitch", "m")))
     assert alone == Roles(barometric=0)
+
+
+def test_an_autopilots_estimate_is_neither_receiver_nor_inertial_unit() -> None:
+    """Names as `init` makes them for a folder of PX4's topics."""
+    found = roles(
+        log(
+            ("tecs_height", "altitude", "m"),
+            ("global_position_gnss", "latitude", "deg"),
+            ("global_position_gnss", "down", "m/s"),
+            ("global_position_height", "altitude", "m"),
+            ("gps_position_gnss", "latitude", "deg"),
+            ("gps_position_gnss", "down", "m/s"),
+            ("gps_position_height", "altitude", "m"),
+            ("local_position", "down", "m/s"),
+        )
+    )
+    assert (found.height, found.vertical, found.inertial) == (6, 5, None)
 
 
 def test_the_receiver_is_who_tells_a_latitude() -> None:

@@ -50,7 +50,7 @@ def build(log: Log, seed: int, session: Session) -> Model:
         afresh_s=jnp.asarray(AFRESH_S),
         columns=columns,
         pairs=pairs,
-        owner=owners(log.channels, log.sensors),
+        owner=_sources(log, found),
     )
     residual = TwoHeights(
         memory_s=jnp.asarray(MEMORY_S),
@@ -125,6 +125,16 @@ def _witnesses(log: Log, found: Roles) -> dict[int, float]:
     return witnesses
 
 
+def _sources(log: Log, found: Roles) -> tuple[int, ...]:
+    """Who may be wrong together: the channels of a sensor, and the receiver's height and vertical speed even where the
+    log has them as two sensors.
+    """
+    source = list(owners(log.channels, log.sensors))
+    if found.height is not None and found.vertical is not None:
+        source = [source[found.height] if s == source[found.vertical] else s for s in source]
+    return tuple(source)
+
+
 def _monitor(log: Log, residual: TwoHeights, agreement: Agreement, limit: float) -> Monitor:
     """Alarm where a pair is so many times its limit apart. A vertical speed has no stand-in."""
     channels = len(log.channels)
@@ -135,7 +145,7 @@ def _monitor(log: Log, residual: TwoHeights, agreement: Agreement, limit: float)
         decision=Exceed(share=1.0),
         recovery=Rebuild(jnp.asarray(np.where(stands_in, REBUILD_S, 0.0)), jnp.full(channels, READMIT_S), channels),
         hold_s=jnp.asarray(hold_s(log)),
-        owner=agreement.owner,
+        owner=owners(log.channels, log.sensors),
         together=False,
     )
 

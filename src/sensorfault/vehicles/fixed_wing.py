@@ -7,7 +7,7 @@ from sensorfault.logs.table import Channel, Log
 from sensorfault.logs.units import si_unit
 from sensorfault.vehicles.car import axes
 
-_RECEIVER, _BAROMETER = ("gnss", "gps"), ("baro", "pressure")
+_RECEIVER, _BAROMETER, _INERTIAL = ("gps", "gnss"), ("baro", "pressure"), ("ins", "imu", "inertial")
 _HEIGHT = ("altitude", "height")
 _CLIMB = {"up": 1.0, "climb": 1.0, "down": -1.0, "sink": -1.0}  # a vertical speed's name, and its sign upwards
 _INPUTS = {"pitch": "rad", "roll": "rad", "elevator": None, "throttle": None, "airspeed": "m/s"}
@@ -18,8 +18,9 @@ class Roles:
     """Columns of a log by what they say of an aircraft's height; None where the log does not say it.
 
     `height`: of the satellite receiver [m]; `barometric`: the height that the air's pressure says [m]. `vertical`: the
-    receiver's vertical speed [m/s]; times `upward` it is a climb. `inertial`: another sensor's vertical speed, with its
-    sign. `elevator` and `throttle` are commands or deflections in any unit. `accelerometer`: columns of x (forward), y
+    receiver's vertical speed [m/s]; times `upward` it is a climb. `inertial`: the vertical speed of an inertial unit,
+    with its sign; an autopilot's estimate is none, since it follows the receiver. `elevator` and `throttle` are
+    commands or deflections in any unit. `accelerometer`: columns of x (forward), y
     and z (right and down, or left and up).
     """
 
@@ -52,19 +53,29 @@ class Roles:
 def roles(log: Log) -> Roles:
     """The first channel of each name and unit in the log's order.
 
-    A height is the receiver's if its sensor is called `gnss..` or `gps..` or tells a latitude too, the barometer's if
-    its sensor is called `baro..` or `pressure..`; a height of nobody known is the receiver's where that has none.
+    A sensor is the receiver if its name has the word `gps` or, failing that, `gnss`, or else if it tells a latitude too
+    (an autopilot's estimate does, and is called after a receiver by `init`); the barometer if its name begins with
+    `baro` or `pressure`, an inertial unit with `ins`, `imu` or `inertial`. A height of nobody known is the receiver's
+    where that has none.
     """
     channels = log.channels
-    receivers = {c.sensor for c in channels if c.name == "latitude" or c.sensor.startswith(_RECEIVER)}
+    located = {c.sensor for c in channels if c.name == "latitude"}
     heights = [i for i, c in enumerate(channels) if c.name in _HEIGHT and si_unit(c.unit) == "m"]
     climbs = [i for i, c in enumerate(channels) if c.name in _CLIMB and si_unit(c.unit) == "m/s"]
+
+    def strange(i: int) -> int:
+        """How little the channel's sensor looks like a receiver."""
+        sensor = channels[i].sensor
+        words = sensor.split("_")
+        near = [any(word.startswith(name) for word in words) for name in _RECEIVER]
+        return [*near, sensor in located, True].index(True)
+
     barometric = _first(i for i in heights if channels[i].sensor.startswith(_BAROMETER))
-    others = [i for i in heights if i != barometric]
-    height = _first([i for i in others if channels[i].sensor in receivers] or others)
+    height = min((i for i in heights if i != barometric), key=strange, default=None)
     own = None if height is None else channels[height].sensor
-    vertical = _first(i for i in climbs if channels[i].sensor in {own, *receivers})
-    inertial = _first(i for i in climbs if channels[i].sensor not in {own, *receivers})
+    receivers = [i for i in climbs if strange(i) <= len(_RECEIVER) or channels[i].sensor == own]
+    vertical = min(receivers, key=strange, default=None)
+    inertial = _first(i for i in climbs if i not in receivers and channels[i].sensor.startswith(_INERTIAL))
     found = {name: _called(channels, name, unit) for name, unit in _INPUTS.items()}
     return Roles(
         height=height,

@@ -50,7 +50,7 @@ class Agreement(eqx.Module):
     afresh_s: Float[Array, ""]
     columns: tuple[int, ...] = eqx.field(static=True)
     pairs: tuple[tuple[int, int], ...] = eqx.field(static=True)  # of witnesses, the first before the second
-    owner: tuple[int, ...] = eqx.field(static=True)
+    owner: tuple[int, ...] = eqx.field(static=True)  # whose channels may be wrong together
 
     def init(self) -> _State:
         none = jnp.zeros(len(self.columns))
