@@ -7,6 +7,8 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.numerics.columns import shifted
+
 RECENT, PAST, OLDEST = 10, 50, 10  # beats: the newest, those remembered before, and of these the reference's
 NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be believed
 FARTHEST = 1e9  # [m]
@@ -57,11 +59,11 @@ class Memory(NamedTuple):
             began=now,
             total=jnp.zeros_like(self.total),
             many=jnp.zeros_like(self.many),
-            recent=_shifted(self.recent, self.total / jnp.maximum(self.many, 1)),
-            lived=_shifted(self.lived, lives),
-            clean=_shifted(self.clean, lives & ~held),
-            past=_shifted(self.past, jnp.where(clean, self.recent[0], self.kept[1])),
-            trusted=_shifted(self.trusted, clean | (doubtful & self.sure[1])),
+            recent=shifted(self.recent, self.total / jnp.maximum(self.many, 1)),
+            lived=shifted(self.lived, lives),
+            clean=shifted(self.clean, lives & ~held),
+            past=shifted(self.past, jnp.where(clean, self.recent[0], self.kept[1])),
+            trusted=shifted(self.trusted, clean | (doubtful & self.sure[1])),
             doubted=jnp.where(held, self.doubted + (now - self.began), 0.0),
         )
         before, these = _mean(after.recent[:-NEWEST], after.clean[:-NEWEST])
@@ -120,7 +122,3 @@ def _mean(beats: Float[Array, "B P"], there: Bool[Array, "B P"]) -> tuple[Float[
     """Of those that are there, and how many they are."""
     many = there.astype(beats.dtype).sum(axis=0)
     return jnp.where(there, beats, 0.0).sum(axis=0) / jnp.maximum(many, 1), many
-
-
-def _shifted(ring: Array, new: Array) -> Array:
-    return jnp.concatenate([ring[1:], new[None]])

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-EARLY = 0.1  # share of the spacing by which a value may come early and still begin a slot: clocks jitter
+EARLY = 0.1  # share of a beat by which a value may come early and still end it: clocks and receivers jitter
 
 
 class Blocks(NamedTuple):

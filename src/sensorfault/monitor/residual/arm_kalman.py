@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.numerics.columns import picked
 from sensorfault.numerics.kalman import carried, correct
 from sensorfault.types import NEVER, Residual, Sample, Trust
 from sensorfault.vehicles.arm import TwoLink
@@ -58,8 +59,8 @@ class ArmKalman(eqx.Module):
 
     def evaluate(self, belief: Belief, sample: Sample) -> tuple[Residual, _Work]:
         prior = self._predict(belief, sample.time)
-        there = _of(sample.fresh, self.outputs) & prior.alive
-        innovation = jnp.where(there, _of(sample.value, self.outputs) - prior.mean, 0.0)
+        there = picked(sample.fresh, self.outputs) & prior.alive
+        innovation = jnp.where(there, picked(sample.value, self.outputs) - prior.mean, 0.0)
         # S = P + R, since H = I
         s = prior.cov + jnp.diag(self.r)
         settled = prior.settled | (prior.alive & (jnp.diagonal(s) <= SHARP * self.r).all())
@@ -79,15 +80,15 @@ class ArmKalman(eqx.Module):
 
     def update(self, pending: _Work, trust: Trust) -> Belief:
         prior, sample, innovation, there = pending
-        believed = _of(trust.measured, self.outputs)
+        believed = picked(trust.measured, self.outputs)
         mean, cov = correct(prior.mean, prior.cov, jnp.eye(4), innovation, self.r, there & believed)
         begins = ~prior.alive & believed.all()
         taken = jnp.where(prior.alive, (there & believed).any(), begins)
-        now = _of(trust.measured, self.torques)
+        now = picked(trust.measured, self.torques)
         return Belief(
-            mean=jnp.where(begins, _of(sample.value, self.outputs), mean),
+            mean=jnp.where(begins, picked(sample.value, self.outputs), mean),
             cov=jnp.where(prior.alive, cov, jnp.diag(jnp.asarray(START) ** 2)),
-            torque=jnp.where(now, _of(sample.value, self.torques), prior.torque),
+            torque=jnp.where(now, picked(sample.value, self.torques), prior.torque),
             known=now.all(),
             time=sample.time,
             heard=jnp.where(taken, sample.time, prior.heard),
@@ -106,7 +107,3 @@ class ArmKalman(eqx.Module):
         # P(k|k-1) = F P Fᵀ + Q
         cov = carried(f, belief.cov) + jnp.diag(self.q * dt + pushed)
         return belief._replace(mean=mean, cov=cov, alive=good, settled=belief.settled & good)
-
-
-def _of(values: Array, columns: tuple[int, ...]) -> Array:
-    return jnp.stack([values[i] for i in columns])

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.numerics.columns import picked
 from sensorfault.numerics.kalman import carried, correct
 from sensorfault.numerics.local import east_north, moved, on_the_map, wrapped
 from sensorfault.types import NEVER, Residual, Sample, Trust
@@ -106,7 +107,7 @@ class BicycleKalman(eqx.Module):
     def evaluate(self, belief: Belief, sample: Sample) -> tuple[Residual, _Work]:
         prior = self._predict(belief, sample.time)
         expected, rows = self.measured(prior.mean, prior.inputs), jax.jacfwd(self.measured)(prior.mean, prior.inputs)
-        latitude, longitude, *velocity = _of(sample.value, self.columns.measured)
+        latitude, longitude, *velocity = picked(sample.value, self.columns.measured)
         way = east_north(latitude, longitude, prior.anchor[0], prior.anchor[1])
         here = on_the_map(latitude, longitude) & sample.fresh[self.columns.position[0]]
         here = here & sample.fresh[self.columns.position[1]] & prior.alive
@@ -123,7 +124,7 @@ class BicycleKalman(eqx.Module):
 
     def update(self, pending: _Work, trust: Trust) -> Belief:
         prior, sample, way, rows, innovation, s, there, _ = pending
-        believed = jnp.stack(_of(trust.measured, self.columns.measured))
+        believed = picked(trust.measured, self.columns.measured)
         fix = there[0] & believed[0] & believed[1]
         taken = jnp.concatenate([jnp.stack([fix, fix]), there[2:] & believed[2:]])
         # (20)-(22)
@@ -134,7 +135,7 @@ class BicycleKalman(eqx.Module):
         gone = prior._replace(
             mean=mean - jnp.where(fix, jnp.concatenate([way, jnp.zeros(4)]), 0.0),  # the fix becomes the anchor
             cov=cov,
-            anchor=jnp.where(fix, jnp.stack(_of(sample.value, self.columns.position)), prior.anchor),
+            anchor=jnp.where(fix, picked(sample.value, self.columns.position), prior.anchor),
             fixed=jnp.where(fix, sample.time, prior.fixed),
             agreed=agreed,
             alive=~lost,
@@ -225,9 +226,9 @@ class BicycleKalman(eqx.Module):
                 inputs.append(jnp.zeros(()))
                 known.append(jnp.zeros((), bool))
                 continue
-            good = jnp.stack(_of(trust.measured, at)).all()
-            held = jnp.stack(_of(sample.present, at)).all() & ~jnp.stack(_of(sample.fresh, at)).any()
-            now, last = axis @ jnp.stack(_of(sample.value, at)), prior.inputs[i]
+            good = picked(trust.measured, at).all()
+            held = picked(sample.present, at).all() & ~picked(sample.fresh, at).any()
+            now, last = axis @ picked(sample.value, at), prior.inputs[i]
             passed = jnp.where(prior.known[i], now + (last - now) * keep, now)
             inputs.append(jnp.where(good, passed, last))
             known.append(good | (held & prior.known[i]))
@@ -236,7 +237,7 @@ class BicycleKalman(eqx.Module):
     def _begin(self, pending: _Work, believed: Bool[Array, ""]) -> Belief:
         """A filter that waits for its first way, or has just gone it."""
         prior, sample, way = pending.prior, pending.sample, pending.way
-        here = jnp.stack(_of(sample.value, self.columns.position))
+        here = picked(sample.value, self.columns.position)
         fix = believed & on_the_map(here[0], here[1])
         age = sample.time - prior.fixed
         marked = (age > 0) & (age <= MARK_S)
@@ -260,10 +261,6 @@ def _turned(heading: Float[Array, ""], size: int) -> Float[Array, "M M"]:
     c, s = jnp.cos(heading), jnp.sin(heading)
     corner = jnp.stack([jnp.stack([c, s]), jnp.stack([-s, c])])
     return jnp.block([[corner, jnp.zeros((2, size - 2))], [jnp.zeros((size - 2, 2)), jnp.eye(size - 2)]])
-
-
-def _of(values: Array, columns: tuple[int, ...]) -> list[Array]:
-    return [values[i] for i in columns]
 
 
 def _either(first: Bool[Array, ""], one: Belief, other: Belief) -> Belief:

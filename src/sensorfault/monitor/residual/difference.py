@@ -7,9 +7,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.numerics.blocks import EARLY
 from sensorfault.types import NEVER, Residual, Sample, Trust
-
-EARLY = 0.1  # share of a beat by which a fix may come early and still close it: receivers jitter
 
 
 class Beat(NamedTuple):

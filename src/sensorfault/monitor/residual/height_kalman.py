@@ -6,6 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from sensorfault.numerics.columns import picked
 from sensorfault.numerics.kalman import carried, correct
 from sensorfault.types import NEVER, Residual, Sample, Trust
 
@@ -58,9 +59,9 @@ class HeightKalman(eqx.Module):
 
     def evaluate(self, belief: _Belief, sample: Sample) -> tuple[Residual, _Work]:
         prior = self._predict(belief, sample.time)
-        there = _of(sample.fresh, self.outputs) & prior.alive
+        there = picked(sample.fresh, self.outputs) & prior.alive
         expected = (self.rows * prior.mean[None]).sum(axis=1)
-        innovation = jnp.where(there, _of(sample.value, self.outputs) - expected, 0.0)
+        innovation = jnp.where(there, picked(sample.value, self.outputs) - expected, 0.0)
         # S = H P Hᵀ + R
         s = carried(self.rows, prior.cov) + jnp.diag(self.r)
         to = (jnp.arange(sample.value.size)[:, None] == jnp.asarray(self.outputs)[None]).astype(float)
@@ -80,7 +81,7 @@ class HeightKalman(eqx.Module):
 
     def update(self, pending: _Work, trust: Trust) -> _Belief:
         prior, sample, innovation, there = pending
-        believed = _of(trust.measured, self.outputs)
+        believed = picked(trust.measured, self.outputs)
         mean, cov = correct(prior.mean, prior.cov, self.rows, innovation, self.r, there & believed)
         begins = ~prior.alive & believed[0]
         none = jnp.zeros(())
@@ -136,14 +137,10 @@ class HeightKalman(eqx.Module):
         """Upward acceleration of the specific force, turned by roll and pitch, and whether it is known."""
         if not self.inertial:
             return jnp.zeros(()), jnp.zeros((), bool)
-        fresh = _of(sample.fresh, self.inertial)
-        good = _of(sample.present, self.inertial).all() & (_of(trust.measured, self.inertial) | ~fresh).all()
-        pitch, roll, x, y, z = _of(sample.value, self.inertial)
+        fresh = picked(sample.fresh, self.inertial)
+        good = picked(sample.present, self.inertial).all() & (picked(trust.measured, self.inertial) | ~fresh).all()
+        pitch, roll, x, y, z = picked(sample.value, self.inertial)
         # a = f_x sin θ - (f_y sin φ + f_z cos φ) cos θ - g
         side = self.below * (y * jnp.sin(roll) + z * jnp.cos(roll))
         up = x * jnp.sin(pitch) - side * jnp.cos(pitch) - GRAVITY
         return jnp.where(good, up, 0.0), good
-
-
-def _of(values: Array, columns: tuple[int, ...]) -> Array:
-    return jnp.stack([values[i] for i in columns])

@@ -6,6 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from sensorfault.numerics.columns import picked, shifted
 from sensorfault.types import NEVER, Residual, Sample, Trust
 from sensorfault.vehicles.height import Climb, StepNetwork
 
@@ -65,8 +66,8 @@ class MultistepObserver(eqx.Module):
         away = now - state.time[-1]
         gone = (away > self.gap_s) | (away <= 0) | sample.born[c]
         state = state._replace(whole=jnp.where(gone, 0, state.whole))
-        known = _of(sample.present, self.model.columns).all()
-        inputs = jnp.where(known, _of(sample.value, self.model.columns), state.inputs[-1])
+        known = picked(sample.present, self.model.columns).all()
+        inputs = jnp.where(known, picked(sample.value, self.model.columns), state.inputs[-1])
         time = jnp.concatenate([state.time, now[None]])
         steps = jnp.concatenate([self.steps, jnp.ones(1, self.steps.dtype)])  # the last goes on from what stands in
         rolled = self.model.rolled(state.height, jnp.concatenate([state.inputs, inputs[None]]), time, steps)
@@ -96,14 +97,14 @@ class MultistepObserver(eqx.Module):
         state, sample, inputs, known, foretold, origin = pending
         c = self.column
         fix, measured = sample.fresh[c], trust.measured[c]
-        new = _of(sample.fresh, self.model.columns)
-        taken = _of(trust.measured | trust.filled, self.model.columns)
+        new = picked(sample.fresh, self.model.columns)
+        taken = picked(trust.measured | trust.filled, self.model.columns)
         whole = (measured | (trust.filled[c] & foretold)) & known & (taken | ~new).all()
-        inputs = jnp.where(_of(trust.filled, self.model.columns), _of(trust.value, self.model.columns), inputs)
+        inputs = jnp.where(picked(trust.filled, self.model.columns), picked(trust.value, self.model.columns), inputs)
         after = _State(
-            height=_shifted(state.height, trust.value[c]),
-            inputs=_shifted(state.inputs, inputs),
-            time=_shifted(state.time, sample.time),
+            height=shifted(state.height, trust.value[c]),
+            inputs=shifted(state.inputs, inputs),
+            time=shifted(state.time, sample.time),
             whole=jnp.where(whole, jnp.minimum(state.whole + 1, self.longest), 0),
             origin=jnp.where(measured, sample.time, origin),
         )
@@ -115,11 +116,3 @@ class MultistepObserver(eqx.Module):
         beyond = jnp.maximum(age / self.ages[-1], 1.0) ** 2
         within = jnp.interp(age, self.ages, self.variance)
         return within * beyond
-
-
-def _of(values: Array, columns: tuple[int, ...]) -> Array:
-    return jnp.stack([values[i] for i in columns])
-
-
-def _shifted(slots: Array, new: Array) -> Array:
-    return jnp.concatenate([slots[1:], new[None]])

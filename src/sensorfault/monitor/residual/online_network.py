@@ -6,6 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.numerics.columns import picked
 from sensorfault.numerics.networks.dense import Mlp
 from sensorfault.numerics.networks.online import taught
 from sensorfault.types import NEVER, Residual, Sample, Trust
@@ -79,14 +80,14 @@ class OnlineNetwork(eqx.Module):
         m, n = self.delays
         away = sample.time - state.time
         gone = (away > self.gap_s) | (away <= 0)
-        anew = gone | _of(sample.born, self.columns)
-        there = _of(sample.present, self.driven).all()
+        anew = gone | picked(sample.born, self.columns)
+        there = picked(sample.present, self.driven).all()
         state = state._replace(
             known=jnp.where(anew, 0.0, state.known),
             heard=jnp.where(there, jnp.minimum(jnp.where(gone, 0.0, state.heard), n) + 1, 0.0),
             clean=jnp.where(anew.any(), 0.0, state.clean),
         )
-        inputs = jnp.concatenate([_of(sample.value, self.driven)[None], state.inputs])
+        inputs = jnp.concatenate([picked(sample.value, self.driven)[None], state.inputs])
         x = self._seen(state.outputs, inputs)
         # (1) y~(k+1) = F(y(k) .. y(k-m+1), u(k+1) .. u(k-n+1))
         origin, unit = self._origin(state)
@@ -95,7 +96,7 @@ class OnlineNetwork(eqx.Module):
         nothing = jnp.zeros_like(sample.value)
         residual = Residual(
             time=sample.time,
-            value=self._placed(_of(sample.value, self.columns) - expected, nothing),
+            value=self._placed(picked(sample.value, self.columns) - expected, nothing),
             cov=self.cov,
             measured=sample.value,
             expected=self._placed(expected, sample.value),
@@ -108,11 +109,11 @@ class OnlineNetwork(eqx.Module):
     def update(self, pending: _Work, trust: Trust) -> _State:
         state, x, inputs, expected, now = pending
         m, n = self.delays
-        measured, filled = _of(trust.measured, self.columns), _of(trust.filled, self.columns)
+        measured, filled = picked(trust.measured, self.columns), picked(trust.filled, self.columns)
         d = len(self.columns)
         # Of an output that is not there the others must still know something: what was foretold, within its range.
         foretold = jnp.clip(expected, self.center[:d] - self.half[:d], self.center[:d] + self.half[:d])
-        y = jnp.where(measured | filled, _of(trust.value, self.columns), foretold)
+        y = jnp.where(measured | filled, picked(trust.value, self.columns), foretold)
         target, teaches = self.lesson(pending, trust)
         _, unit = self._origin(state)
         network = taught(state.network, x, target, teaches, self.tolerance / unit, self.rate, self.iterations)
@@ -135,9 +136,9 @@ class OnlineNetwork(eqx.Module):
         m, n = self.delays
         origin, unit = self._origin(state)
         unjudged = state.quiet < self.warm
-        allowed = _of(trust.learn, self.columns) | (unjudged & _of(trust.measured, self.columns))
+        allowed = picked(trust.learn, self.columns) | (unjudged & picked(trust.measured, self.columns))
         whole = (state.clean >= m) & (state.heard > n)
-        return (_of(trust.value, self.columns) - origin) / unit, allowed & whole
+        return (picked(trust.value, self.columns) - origin) / unit, allowed & whole
 
     def _seen(self, outputs: Float[Array, "m D"], inputs: Float[Array, "p U"]) -> Float[Array, " N"]:
         """What the network sees: the newest outputs, the increments before them, the inputs.
@@ -160,8 +161,3 @@ class OnlineNetwork(eqx.Module):
         return jnp.stack(
             [of_outputs[self.columns.index(c)] if c in self.columns else of_others[c] for c in range(of_others.size)]
         )
-
-
-def _of(each: Array, columns: tuple[int, ...]) -> Array:
-    """These columns out of one number a channel."""
-    return jnp.stack([each[i] for i in columns]) if columns else each[:0]

@@ -3,6 +3,7 @@
 import equinox as eqx
 import jax.numpy as jnp
 
+from sensorfault.monitor.statistic.each import each
 from sensorfault.types import Residual, Score, Trust
 
 
@@ -13,8 +14,7 @@ class Absolute(eqx.Module):
         return ()
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
-        each = jnp.eye(residual.value.size, dtype=bool)
-        return Score(jnp.abs(residual.value), residual.valid, each, each.astype(residual.value.dtype)), ()
+        return each(jnp.abs(residual.value), residual.valid), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
         return ()

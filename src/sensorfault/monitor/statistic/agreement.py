@@ -7,9 +7,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from sensorfault.numerics.apart import PAST, RECENT, Memory
+from sensorfault.numerics.blocks import EARLY
+from sensorfault.numerics.columns import picked
 from sensorfault.types import NEVER, Residual, Score, Trust
-
-EARLY = 0.1  # share of a beat by which a fix may come early and still close it: receivers jitter
 
 
 class _State(NamedTuple):
@@ -69,7 +69,7 @@ class Agreement(eqx.Module):
         gap, known = memory.gaps()
         covers = self._covers()
         out = (covers & jnp.broadcast_to(jnp.asarray(residual.out), fresh.shape)[None]).any(axis=1)
-        here = _of(present, self.columns)
+        here = picked(present, self.columns)
         known = known & (here[i] & here[j] & here[0] & ~out)[None]
         growth = jnp.where(self._speaks(), 1 + memory.doubted / ((RECENT + PAST) * self.beat_s), 1.0)
         jump, drift = jnp.abs(gap) / (self.limit * growth[None])
@@ -80,9 +80,9 @@ class Agreement(eqx.Module):
         accused = named(over, covers, self.owner)
         # below these limits nobody disagrees; a lower one, set from outside, accuses both
         blame = covers & (accused | ~over.any())[None]
-        who, where = _of(accused, self.columns), (over[:, None] & covers).any(axis=0)
+        who, where = picked(accused, self.columns), (over[:, None] & covers).any(axis=0)
         excused = who.any() & ~(who & (self.upward == 0)).any()
-        suspect = _of(where, self.columns) & ~excused
+        suspect = picked(where, self.columns) & ~excused
         healed = (long & known[1] & ~over).any()
         twice = jnp.concatenate([covers, covers]), jnp.concatenate([blame, blame]).astype(value.dtype)
         work = _Work(state._replace(memory=memory), fresh, suspect, excused, healed)
@@ -92,8 +92,8 @@ class Agreement(eqx.Module):
         memory = work.state.memory
         # A height that is kept out, or that disagrees, is in doubt until it is heard without. A vertical speed is not:
         # what it has added up to stays wrong after it is right again.
-        new = _of(work.fresh, self.columns)
-        bad = (work.suspect | (new & ~_of(trust.measured, self.columns))) & (self.upward == 0)
+        new = picked(work.fresh, self.columns)
+        bad = (work.suspect | (new & ~picked(trust.measured, self.columns))) & (self.upward == 0)
         i, j = self._sides()
         begins = bad[i] | bad[j]
         ends = new[0] & ~begins
@@ -123,7 +123,7 @@ class Agreement(eqx.Module):
         """With what each witness says now: a height, or what its speed has added up to [m]."""
         now = residual.time
         value, fresh, present, born = (
-            _of(x, self.columns)
+            picked(x, self.columns)
             for x in (residual.measured, residual.extra.fresh, residual.extra.present, residual.born)
         )
         speaks = self.upward != 0
@@ -155,7 +155,3 @@ def named(over: Bool[Array, " P"], covers: Bool[Array, "P C"], owner: tuple[int,
     always = alone & (~over[:, None] | covers).all(axis=0)
     once = alone & (over[:, None] & covers).any(axis=0)
     return jnp.where(always.any(), always, once)
-
-
-def _of(values: Array, columns: tuple[int, ...]) -> Array:
-    return jnp.stack([values[c] for c in columns])

@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from sensorfault.monitor.statistic.windowed import each
+from sensorfault.monitor.statistic.each import each
 from sensorfault.types import NEVER, Residual, Score, Trust
 
 

@@ -4,8 +4,9 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
+from sensorfault.monitor.statistic.each import each
 from sensorfault.numerics.blocks import EARLY, Blocks, Window, window
 from sensorfault.types import NEVER, Residual, Score, Trust
 
@@ -56,9 +57,3 @@ class Windowed(eqx.Module):
 
     def update(self, pending: _Past, trust: Trust) -> _Past:
         return pending
-
-
-def each(value: Float[Array, " C"], valid: Bool[Array, " C"]) -> Score:
-    """One test a channel, which accuses that channel alone."""
-    own = jnp.eye(value.size, dtype=bool)
-    return Score(value, valid, own, own.astype(value.dtype))
