@@ -2,7 +2,7 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import jax
@@ -11,8 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.numerics.fuzzy import Anfis, Premises
-from sensorfault.numerics.unit_range import UnitRange
-from sensorfault.training.consequents import Lesson, rms, solve
+from sensorfault.training.consequents import RIDGE, Lesson, Numbers, solve
 from sensorfault.training.hybrid import hybrid
 from sensorfault.training.labelled import checked, unit_range
 from sensorfault.training.partition import grid, scatter, subtractive
@@ -26,7 +25,8 @@ class Setting:
     """How the rules begin and how they are trained. The defaults are the paper's, as far as it says.
 
     `memberships` on each input of a grid; `rules` of a scatter; `radius` of a subtractive cluster; `kind`: of the
-    memberships. `log`, `reach`: see UnitRange. `epochs` with steps of first length `step`, or as many generations.
+    memberships. `log`, `reach`: see UnitRange; `ridge`: see Lesson. `epochs` with steps of first length `step`, or as
+    many generations.
     """
 
     partition: Literal["grid", "scatter", "subtractive"] = "grid"
@@ -36,20 +36,21 @@ class Setting:
     kind: Literal["bell", "gaussian", "triangle"] = "bell"
     log: bool = False
     reach: float = 1.0
+    ridge: float = RIDGE
     premises: Literal["hybrid", "population"] = "hybrid"
     epochs: int = 100
     step: float = 0.01
     seed: int = 0
 
-    def begin(self, lesson: Lesson) -> Premises:
-        """The premises before training."""
+    def begin(self, x: Float[np.ndarray, "N F"], y: Float[np.ndarray, " N"]) -> Premises:
+        """The premises before training, for these scaled features."""
         match self.partition:
             case "grid":
-                return grid(lesson.x.shape[1], self.memberships, self.kind)
+                return grid(x.shape[1], self.memberships, self.kind)
             case "scatter":
-                return scatter(lesson.x, self.rules, self.seed, self.kind)
+                return scatter(x, self.rules, self.seed, self.kind)
             case "subtractive":
-                return subtractive(lesson.x, lesson.y, self.radius, self.kind)
+                return subtractive(x, y, self.radius, self.kind)
 
 
 @dataclass(frozen=True)
@@ -84,23 +85,26 @@ def fit_anfis(
     """
     checked(features, target)
     unit = unit_range(features, setting.log, setting.reach)
-    lesson = Lesson(unit(features), target)
-    other = None if unseen is None else Lesson(unit(unseen[0]), unseen[1])
-    begin = setting.begin(lesson)
+    x = unit(features)
+    begin = setting.begin(x, target)
+    lesson = Lesson.of(begin, x, target, setting.ridge)
+    other = None if unseen is None else Lesson.of(begin, unit(unseen[0]), unseen[1])
+    first = Numbers.of(begin)
     if setting.premises == "hybrid":
-        course = hybrid(begin, lesson, other, setting.epochs, setting.step)
+        course = hybrid(first, lesson, other, setting.epochs, setting.step)
     else:
-        course = population(begin, lesson, other, setting.epochs, setting.seed)
+        course = population(first, lesson, other, setting.epochs, setting.seed)
+
+    def assembled(numbers: Numbers, consequents: Float[np.ndarray, "R F+1"]) -> Anfis:
+        premises = replace(begin, center=numbers.center, width=numbers.width, slope=numbers.slope)
+        model: Anfis = jax.tree.map(jnp.asarray, Anfis(unit, premises, consequents))
+        return model
+
     return Fitted(
-        model=_assembled(unit, course.premises, course.consequents),
-        start=_assembled(unit, begin, solve(begin, lesson).consequents),
-        rmse=rms(solve(course.premises, lesson).left),
+        model=assembled(course.numbers, course.consequents),
+        start=assembled(first, solve(first, lesson).consequents),
+        rmse=solve(course.numbers, lesson).error,
         learned=course.learned,
         validated=course.validated,
         best_epoch=course.best_epoch,
     )
-
-
-def _assembled(unit: UnitRange, premises: Premises, consequents: Float[np.ndarray, "R F+1"]) -> Anfis:
-    model: Anfis = jax.tree.map(jnp.asarray, Anfis(unit, premises, consequents))
-    return model

@@ -1,39 +1,33 @@
 """Jang's hybrid training: what rules say by least squares, forward; when they apply by gradient, backward."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.numerics.fuzzy import FAINT, Premises
-from sensorfault.training.consequents import Lesson, Solved, missed, rms, solve
+from sensorfault.numerics.fuzzy import FAINT
+from sensorfault.training.consequents import Lesson, Numbers, Solved, solve
 
 NARROW, STEEP = 0.02, (0.5, 8.0)  # bounds of a and b
 GROW, SHRINK, RUN = 1.1, 0.9, 4  # Jang 1993, section III
 
 
-class Slope(NamedTuple):
-    """Of the mean square error over each premise's parameters."""
-
-    center: Float[np.ndarray, " P"]
-    width: Float[np.ndarray, " P"]
-    slope: Float[np.ndarray, " P"]
-
-
-def slope(premises: Premises, lesson: Lesson, solved: Solved) -> Slope:
+def slope(numbers: Numbers, lesson: Lesson, solved: Solved) -> Numbers:
     """∂E/∂(c, a, b), E the mean square error; the consequents stay, which at their best changes nothing."""
-    f = solved.left + lesson.y
+    e, t = solved.left, solved.t
     # ∂E/∂ln w_r = 2 e w_r (f_r - f) / N
-    fired = 2 / len(f) * (solved.left[:, None] * solved.weights * (solved.says - f[:, None]))
-    grade = fired @ premises.asked()
-    t = (lesson.x[:, premises.inputs] - premises.center) / premises.width
-    by_t, by_b = STEEPNESS[premises.kind](t, premises.slope, solved.grades)
+    fired = 2 / len(e) * e[:, None] * solved.weights * (solved.says - (e + lesson.y)[:, None])
+    grade = fired @ lesson.asked
+    by_t, by_b = STEEPNESS[lesson.kind](t, numbers.slope, solved.grades)
     along = grade * by_t
     # ∂t/∂c = -1/a,  ∂t/∂a = -t/a
-    center, width = (-(along * x).sum(axis=0) / premises.width for x in (np.ones_like(t), t))
-    return Slope(center, width, (grade * by_b).sum(axis=0))
+    return Numbers(
+        center=-along.sum(axis=0) / numbers.width,
+        width=-(along * t).sum(axis=0) / numbers.width,
+        slope=(grade * by_b).sum(axis=0),
+    )
 
 
 _Grades = Float[np.ndarray, "N P"]
@@ -63,15 +57,13 @@ STEEPNESS: dict[str, Callable[[_Grades, Float[np.ndarray, " P"], _Grades], tuple
 }
 
 
-def stepped(premises: Premises, down: Slope, size: float) -> Premises:
+def stepped(numbers: Numbers, down: Numbers, size: float) -> Numbers:
     """A step of this length against the slope, kept within bounds. Jang 1993, equation (11)."""
     norm = np.sqrt(sum((part**2).sum() for part in down))
     if not norm > 0:
-        return premises
-    center, width, b = (
-        getattr(premises, name) - size / norm * part for name, part in zip(Slope._fields, down, strict=True)
-    )
-    return replace(premises, center=center, width=np.maximum(width, NARROW), slope=np.clip(b, *STEEP))
+        return numbers
+    center, width, b = (now - size / norm * part for now, part in zip(numbers, down, strict=True))
+    return Numbers(center, np.maximum(width, NARROW), np.clip(b, *STEEP))
 
 
 @dataclass
@@ -95,28 +87,29 @@ class StepRule:
 
 
 class Course(NamedTuple):
-    """The best epoch's premises and what they say; errors by epoch."""
+    """The best premises and what they say; errors by epoch."""
 
-    premises: Premises
+    numbers: Numbers
     consequents: Float[np.ndarray, "R F+1"]
     learned: tuple[float, ...]
     validated: tuple[float, ...]
     best_epoch: int
 
 
-def hybrid(premises: Premises, lesson: Lesson, unseen: Lesson | None, epochs: int, step: float) -> Course:
+def hybrid(numbers: Numbers, lesson: Lesson, unseen: Lesson | None, epochs: int, step: float) -> Course:
     """So many epochs; the best is that of the least error on `unseen`, or without it on the lesson."""
     rule = StepRule(step)
     learned, validated = list[float](), list[float]()
-    best = premises, np.zeros(0), 0
+    best, says, least = 0, np.zeros(0), np.inf
+    found = numbers
     for epoch in range(epochs + 1):
-        solved = solve(premises, lesson)
-        learned.append(rms(solved.left))
+        solved = solve(numbers, lesson)
+        learned.append(solved.error)
         if unseen is not None:
-            validated.append(missed(premises, solved.consequents, unseen))
-        judged = validated or learned
-        if judged[-1] <= min(judged):
-            best = premises, solved.consequents, epoch
+            validated.append(solve(numbers, unseen, solved.consequents).error)
+        error = validated[-1] if validated else learned[-1]
+        if error < least:
+            best, found, says, least = epoch, numbers, solved.consequents, error
         rule.hear(learned)
-        premises = stepped(premises, slope(premises, lesson, solved), rule.size)
-    return Course(best[0], best[1], tuple(learned), tuple(validated), best[2])
+        numbers = stepped(numbers, slope(numbers, lesson, solved), rule.size)
+    return Course(found, says, tuple(learned), tuple(validated), best)

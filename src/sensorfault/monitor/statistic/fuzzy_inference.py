@@ -10,8 +10,8 @@ from sensorfault.types import Residual, Score, Trust
 class FuzzyInference(eqx.Module):
     """ANFIS-j of |r|, M² and R* for each measurement j [m]. Xu et al. 2023, section 3; the limit is its T2, (32).
 
-    M² is with the covariance of the residual, R* its noise. `columns[j]`: the channel that model j judges; no test
-    examines the others.
+    M² is with the covariance of the residual, R* its noise. `columns[j]`: the channel that model j judges; the
+    tests of the others are never valid.
     """
 
     models: tuple[Anfis, ...]

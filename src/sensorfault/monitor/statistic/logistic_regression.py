@@ -10,7 +10,7 @@ from sensorfault.types import Residual, Score, Trust
 class LogisticRegression(eqx.Module):
     """Log odds of |r|, M² and R* for each measurement: the plain twin of FuzzyInference. More likely than not: above 0.
 
-    `columns[j]`: the channel that model j judges; no test examines the others.
+    `columns[j]`: the channel that model j judges; the tests of the others are never valid.
     """
 
     models: tuple[Logistic, ...]
