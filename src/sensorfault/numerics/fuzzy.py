@@ -73,12 +73,12 @@ def strengths(fired: Float[Any, "*batch R"]) -> Float[Any, "*batch R"]:
 class Anfis(eqx.Module):
     """First-order Takagi-Sugeno inference, Xu et al. 2023, equations (21)-(25), of features in their own units.
 
-    `consequents[r]`: the slopes of what rule r says on each scaled feature, then its constant.
+    `consequents[r]`: D = F + 1 numbers: what rule r says by each scaled feature, then its constant.
     """
 
     unit: UnitRange
     premises: Premises
-    consequents: Float[Any, "R F+1"]
+    consequents: Float[Any, "R D"]
 
     def __call__(self, features: Float[Any, "*batch F"]) -> Float[Any, "*batch"]:
         x = self.unit(features)

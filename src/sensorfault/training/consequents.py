@@ -29,7 +29,7 @@ class Lesson(NamedTuple):
     `asked`, `kind`: as in Premises. `ridge`: penalty on the consequents for each row.
     """
 
-    one: Float[np.ndarray, "N F+1"]
+    one: Float[np.ndarray, "N D"]
     seen: Float[np.ndarray, "N P"]
     y: Float[np.ndarray, " N"]
     asked: Float[np.ndarray, "R P"]
@@ -53,7 +53,7 @@ class Solved(NamedTuple):
     weights: Float[np.ndarray, "N R"]
     says: Float[np.ndarray, "N R"]
     left: Float[np.ndarray, " N"]
-    consequents: Float[np.ndarray, "R F+1"]
+    consequents: Float[np.ndarray, "R D"]
 
     @property
     def error(self) -> float:
@@ -61,7 +61,7 @@ class Solved(NamedTuple):
         return float(np.sqrt(np.mean(self.left**2)))
 
 
-def solve(numbers: Numbers, lesson: Lesson, consequents: Float[np.ndarray, "R F+1"] | None = None) -> Solved:
+def solve(numbers: Numbers, lesson: Lesson, consequents: Float[np.ndarray, "R D"] | None = None) -> Solved:
     """Layers 1 to 5, the consequents by ridge regression where none are given. Xu et al. 2023, (21)-(25)."""
     t = (lesson.seen - numbers.center) / numbers.width
     grades = MEMBERSHIPS[lesson.kind](t, numbers.slope)

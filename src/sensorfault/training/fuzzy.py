@@ -13,11 +13,9 @@ from jaxtyping import Float
 from sensorfault.numerics.fuzzy import Anfis, Premises
 from sensorfault.training.consequents import RIDGE, Lesson, Numbers, solve
 from sensorfault.training.hybrid import hybrid
-from sensorfault.training.labelled import checked, unit_range
+from sensorfault.training.labelled import Labelled, checked, unit_range
 from sensorfault.training.partition import grid, scatter, subtractive
 from sensorfault.training.population import population
-
-Labelled = tuple[Float[np.ndarray, "N F"], Float[np.ndarray, " N"]]
 
 
 @dataclass(frozen=True)
@@ -88,14 +86,14 @@ def fit_anfis(
     x = unit(features)
     begin = setting.begin(x, target)
     lesson = Lesson.of(begin, x, target, setting.ridge)
-    other = None if unseen is None else Lesson.of(begin, unit(unseen[0]), unseen[1])
+    other = None if unseen is None else Lesson.of(begin, unit(unseen.features), unseen.target)
     first = Numbers.of(begin)
     if setting.premises == "hybrid":
         course = hybrid(first, lesson, other, setting.epochs, setting.step)
     else:
         course = population(first, lesson, other, setting.epochs, setting.seed)
 
-    def assembled(numbers: Numbers, consequents: Float[np.ndarray, "R F+1"]) -> Anfis:
+    def assembled(numbers: Numbers, consequents: Float[np.ndarray, "R D"]) -> Anfis:
         premises = replace(begin, center=numbers.center, width=numbers.width, slope=numbers.slope)
         model: Anfis = jax.tree.map(jnp.asarray, Anfis(unit, premises, consequents))
         return model

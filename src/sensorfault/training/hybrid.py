@@ -90,7 +90,7 @@ class Course(NamedTuple):
     """The best premises and what they say; errors by epoch."""
 
     numbers: Numbers
-    consequents: Float[np.ndarray, "R F+1"]
+    consequents: Float[np.ndarray, "R D"]
     learned: tuple[float, ...]
     validated: tuple[float, ...]
     best_epoch: int

@@ -1,5 +1,7 @@
 """Features of measurements whose error is known, to learn from."""
 
+from typing import NamedTuple
+
 import numpy as np
 from jaxtyping import Float
 
@@ -8,6 +10,13 @@ from sensorfault.numerics.unit_range import UnitRange
 
 LEAST = 20  # rows
 SMALL = 0.01  # of the median feature: the logarithm of a smaller one says nothing
+
+
+class Labelled(NamedTuple):
+    """Features as numerics/innovation.py has them, and the size of each measurement's error [its unit]."""
+
+    features: Float[np.ndarray, "N F"]
+    target: Float[np.ndarray, " N"]
 
 
 def checked(features: Float[np.ndarray, "N F"], target: Float[np.ndarray, " N"]) -> None:

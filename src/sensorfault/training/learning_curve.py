@@ -6,10 +6,10 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import LogError
+from sensorfault.training.labelled import Labelled
 
 SIZES = (25, 50, 100, 200, 400)
 
-Labelled = tuple[Float[np.ndarray, "N F"], Float[np.ndarray, " N"]]
 Answer = Callable[[Float[np.ndarray, "M F"]], Float[np.ndarray, " M"]]
 
 
@@ -30,17 +30,17 @@ def learning_curve(
     Raises:
         LogError: fewer rows than the largest size.
     """
-    features, target = learn
-    if max(sizes) > len(target):
-        raise LogError(f"{len(target)} labelled rows are fewer than {max(sizes)}; give more, or learn from fewer.")
+    rows = len(learn.target)
+    if max(sizes) > rows:
+        raise LogError(f"{rows} labelled rows are fewer than {max(sizes)}; give more, or learn from fewer.")
     told = np.full((len(sizes), draws), np.nan)
     for d in range(draws):
-        order = np.random.default_rng((seed, d)).permutation(len(target))
+        order = np.random.default_rng((seed, d)).permutation(rows)
         for s, size in enumerate(sizes):
             part = order[:size]
             try:
-                answer = fit((features[part], target[part]))
+                answer = fit(Labelled(learn.features[part], learn.target[part]))
             except LogError:
                 continue
-            told[s, d] = judge(answer(test[0]), test[1])
+            told[s, d] = judge(answer(test.features), test.target)
     return told

@@ -1,0 +1,76 @@
+"""The statistics that learn from labelled innovations, in a monitor: each channel by its own model, and stored."""
+
+from pathlib import Path
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from laws.walk import walk
+from monitor.scripted import FromBlock, Said
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.drop import Drop
+from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
+from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.run import samples
+from sensorfault.store import _decode, _encode
+from sensorfault.training.fuzzy import Setting, fit_anfis
+from sensorfault.training.logistic import fit_logistic
+from sensorfault.types import FAULT, OK, Sample
+
+CHANNELS, COLUMNS = 3, (0, 2)
+
+
+def learned(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Innovations of FromBlock's unit variances, in which a large one means a large error."""
+    r = np.abs(np.random.default_rng(seed).normal(0, 3, 120))
+    return np.column_stack([r, r**2, np.ones(120)]), r
+
+
+def statistic(name: str) -> FuzzyInference | LogisticRegression:
+    if name == "fuzzy":
+        settings = (Setting(epochs=5), Setting(partition="scatter", rules=3, log=True, epochs=5))
+        models = (fit_anfis(*learned(s), setting).model for s, setting in enumerate(settings))
+        return FuzzyInference(tuple(models), COLUMNS)
+    return LogisticRegression(tuple(fit_logistic(learned(s)[0], learned(s)[1] > 2) for s in range(2)), COLUMNS)
+
+
+def rows() -> Sample:
+    rng = np.random.default_rng(9)
+    value = 5.0 + 3 * rng.standard_normal((40, CHANNELS))
+    value[rng.random(value.shape) < 0.2] = np.nan
+    return samples(np.arange(40.0), value, ~np.isnan(value), Said((np.zeros((40, 1)),), np.full((40, CHANNELS), 5.0)))
+
+
+def monitor(part: eqx.Module, limit: float) -> Monitor:
+    branch = Branch(part, Fixed(jnp.full(CHANNELS, limit)))
+    return Monitor(FromBlock(CHANNELS), (branch,), Exceed(), Drop(), jnp.full(CHANNELS, 0.5), (0, 1, 2))
+
+
+@pytest.mark.parametrize(("name", "limit"), [("fuzzy", 4.0), ("logistic", 0.0)])
+def test_each_channel_is_judged_by_its_own_model(name: str, limit: float) -> None:
+    part = statistic(name)
+    told = walk(monitor(part, limit), rows())
+    score, fresh, r = told.reports.scores[0], np.asarray(rows().fresh), np.asarray(rows().value) - 5.0
+    np.testing.assert_array_equal(score.valid, fresh & [True, False, True])
+    assert np.isfinite(score.value).all()
+    for model, column in zip(part.models, COLUMNS, strict=True):
+        there = fresh[:, column]
+        e = r[there, column]
+        want = jax.tree.map(np.asarray, model)(np.column_stack([np.abs(e), e**2, np.ones(len(e))]))
+        np.testing.assert_allclose(score.value[there, column], want, rtol=1e-9, atol=1e-12)
+        np.testing.assert_array_equal(told.channel[there, column], np.where(want > limit, FAULT, OK))
+        assert 0 < (want > limit).sum() < len(e)
+
+
+@pytest.mark.parametrize("name", ["fuzzy", "logistic"])
+def test_it_is_stored_to_the_bit(name: str, tmp_path: Path) -> None:
+    part = statistic(name)
+    tensors: dict[str, np.ndarray] = {}
+    again = _decode(_encode(part, "statistic", tensors), tensors)
+    assert eqx.tree_equal(part, again)
+    assert again.columns == COLUMNS
