@@ -30,8 +30,10 @@ from sensorfault.monitor.statistic.cusum import Cusum
 from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.ewma import Ewma
 from sensorfault.monitor.statistic.exchange import Exchange
+from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
 from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.lasting import Lasting
+from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.mean_pair import MeanPair
 from sensorfault.monitor.statistic.norm import Norm
@@ -51,8 +53,11 @@ from sensorfault.monitor.threshold.adaptive import Adaptive
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
 from sensorfault.monitor.threshold.sigma import Sigma
+from sensorfault.numerics.fuzzy import Anfis, Premises
+from sensorfault.numerics.logistic import Logistic
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
+from sensorfault.numerics.unit_range import UnitRange
 from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.height import Climb, StepNetwork
 from sensorfault.vehicles.inertial import Inertial, SideOn
@@ -72,6 +77,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
         *(TwoHeights, Agreement),
+        *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
         *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),

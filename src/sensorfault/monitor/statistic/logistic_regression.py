@@ -1,0 +1,26 @@
+"""The odds that a measurement is off, from what its innovation looks like: one test a channel."""
+
+import equinox as eqx
+
+from sensorfault.monitor.statistic.featured import featured
+from sensorfault.numerics.logistic import Logistic
+from sensorfault.types import Residual, Score, Trust
+
+
+class LogisticRegression(eqx.Module):
+    """Log odds of |r|, M² and R* for each measurement: the plain twin of FuzzyInference. More likely than not: above 0.
+
+    `columns[j]`: the channel that model j judges; the tests of the others are never valid.
+    """
+
+    models: tuple[Logistic, ...]
+    columns: tuple[int, ...] = eqx.field(static=True)
+
+    def init(self) -> tuple[()]:
+        return ()
+
+    def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
+        return featured(self.models, self.columns, residual), ()
+
+    def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
+        return ()
