@@ -15,6 +15,7 @@ DVL_WHITE, DVL_BIAS, DVL_SCALE = 0.1, 0.02, 0.005  # [m/s], [m/s], of the speed;
 COMPASS_SD, COMPASS_BIAS = np.deg2rad(0.3), np.deg2rad(1.0)
 DEPTH_SD = 0.1  # [m]
 ORIGIN_DEG = (45.76, 126.63)
+TWO = Ranging()
 FOLLOWER = (
     Channel("latitude", "gps", "deg", watch=False),
     Channel("longitude", "gps", "deg", watch=False),
@@ -47,7 +48,7 @@ class Mission:
 def sail(
     duration_s: float = 1700.0,
     seed: int = 0,
-    ranging: Ranging = Ranging(),
+    ranging: Ranging = TWO,
     surface_s: float = 0.0,
 ) -> Mission:
     """A follower that goes 1 to 2 m/s on winding courses, at 1 Hz; GPS at the first tick and up to `surface_s`.

@@ -6,7 +6,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
-from scipy.optimize import minimize
 
 from sensorfault.logs.table import Log
 from sensorfault.monitor.monitor import Monitor
@@ -24,6 +23,8 @@ def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], lo
     `build(q, sigma)` gives a monitor whose limits are off. The likelihood is that of Gaussian innovations, robust to a
     few wild ones.
     """
+    from scipy.optimize import minimize  # lazily: slow to import, and seldom needed
+
     rows = samples(log.time, log.value, log.fresh)
     cost = jax.jit(lambda q, sigma: _cost(build(q, sigma), rows))
 

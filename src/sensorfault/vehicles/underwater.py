@@ -1,7 +1,5 @@
 """A vehicle under water that reckons its way and hears from leaders how far away they are."""
 
-from dataclasses import dataclass
-
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
@@ -18,17 +16,15 @@ LOST_M = 2000.0  # with a position no better than this, ranges do not bring it b
 _POSITIONS = (("latitude", "longitude", "rad"), ("north", "east", "m"), ("y", "x", "m"))
 
 
-@dataclass(frozen=True)
-class Leader:
+class Leader(eqx.Module):
     """Columns of one leader: the range to it, where it says it is (north or latitude first), and how deep."""
 
-    range: int
-    position: tuple[int, int]
-    depth: int | None = None
+    range: int = eqx.field(static=True)
+    position: tuple[int, ...] = eqx.field(static=True)
+    depth: int | None = eqx.field(static=True, default=None)
 
 
-@dataclass(frozen=True)
-class Roles:
+class FollowerRoles(eqx.Module):
     """Columns of a log by what they say of a follower; empty or None where the log does not say it.
 
     `position`: north or latitude first, of a sensor without a range: where the follower begins. `velocity`: forward
@@ -36,14 +32,14 @@ class Roles:
     """
 
     leaders: tuple[Leader, ...] = ()
-    position: tuple[int, ...] = ()
-    velocity: tuple[int, ...] = ()
-    heading: int | None = None
-    depth: int | None = None
-    geodetic: bool = True
+    position: tuple[int, ...] = eqx.field(static=True, default=())
+    velocity: tuple[int, ...] = eqx.field(static=True, default=())
+    heading: int | None = eqx.field(static=True, default=None)
+    depth: int | None = eqx.field(static=True, default=None)
+    geodetic: bool = eqx.field(static=True, default=True)
 
 
-def roles(log: Log) -> Roles:
+def roles(log: Log) -> FollowerRoles:
     """A leader is a sensor with a `range` [m] and a position; the rest are the first channels of each name and unit.
 
     A position is `latitude` and `longitude`, or `north` and `east` or `y` and `x` in metres, all of one kind.
@@ -62,7 +58,7 @@ def roles(log: Log) -> Roles:
     ahead = _named(log.channels, ("forward", "surge"), "m/s")
     aside = _named(log.channels, ("right", "starboard"), "m/s")
     others = [s for s in sensors if ranges[s] is None]
-    return Roles(
+    return FollowerRoles(
         leaders=leaders,
         position=next((placed[s] for s in others if placed[s]), ()),
         velocity=() if ahead is None or aside is None else (ahead, aside),
@@ -95,7 +91,7 @@ class Follower(eqx.Module):
 
     q: Float[Array, ""]
     start_m: Float[Array, ""]
-    roles: Roles = eqx.field(static=True)
+    roles: FollowerRoles
 
     @property
     def observed(self) -> tuple[int, ...]:

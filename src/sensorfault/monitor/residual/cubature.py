@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.monitor.residual.measurement_noise import SageHusa, Stated, Windowed
+from sensorfault.monitor.residual.measurement_noise import SageHusa, Stated, WindowedNoise
 from sensorfault.numerics.columns import picked
 from sensorfault.numerics.cubature import Seen, correct, observe, predict
 from sensorfault.types import NEVER, Residual, Sample, Trust
@@ -80,7 +80,7 @@ class Cubature(eqx.Module):
 
     vehicle: Any
     r: Float[Array, " M"]
-    noise: Stated | SageHusa | Windowed
+    noise: Stated | SageHusa | WindowedNoise
     growth: Float[Array, ""]
     repeated: Float[Array, ""]
     channels: int = eqx.field(static=True)

@@ -68,7 +68,7 @@ class SageHusa(eqx.Module):
         return _Learned(jnp.where(taken, r, state.r), state.many + taken)
 
 
-class Windowed(eqx.Module):
+class WindowedNoise(eqx.Module):
     """R as the mean over the last `length` innovations taken in shows it. Mohamed & Schwarz 1999, from innovations."""
 
     length: int = eqx.field(static=True)
