@@ -2,11 +2,14 @@
 
 from sensorfault.logs.table import LogError
 from sensorfault.methods import (
+    anfis_cubature,
     ar_predictor,
     arm_kalman,
     bicycle_kalman,
     bp_autoencoder,
     car,
+    chi_square_cubature,
+    cooperative,
     cusum,
     drone,
     elm_autoencoder,
@@ -16,6 +19,7 @@ from sensorfault.methods import (
     kinematic_observer,
     linear_conditioning,
     linear_extrapolation,
+    logistic_cubature,
     lstm_displacement,
     lstm_predictor,
     mean_pair,
@@ -60,6 +64,10 @@ _RECIPES = (
     mean_pair.RECIPE,
     height_agreement.RECIPE,
     drone.RECIPE,
+    *chi_square_cubature.RECIPES,
+    *anfis_cubature.RECIPES,
+    logistic_cubature.RECIPE,
+    cooperative.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

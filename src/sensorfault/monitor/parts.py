@@ -10,10 +10,12 @@ from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.monitor.residual.arm_kalman import ArmKalman
 from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
 from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.monitor.residual.cubature import Cubature
 from sensorfault.monitor.residual.difference import Difference
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.height_kalman import HeightKalman
+from sensorfault.monitor.residual.measurement_noise import SageHusa, Stated, WindowedNoise
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.multistep_observer import MultistepObserver
 from sensorfault.monitor.residual.online_network import OnlineNetwork
@@ -37,6 +39,7 @@ from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.mean_pair import MeanPair
 from sensorfault.monitor.statistic.norm import Norm
+from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.monitor.statistic.normality import Normality
 from sensorfault.monitor.statistic.of import Of
 from sensorfault.monitor.statistic.ramp_glr import RampGlr
@@ -61,6 +64,7 @@ from sensorfault.numerics.unit_range import UnitRange
 from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.height import Climb, StepNetwork
 from sensorfault.vehicles.inertial import Inertial, SideOn
+from sensorfault.vehicles.underwater import Follower, FollowerRoles, Leader
 
 PARTS: dict[str, type[eqx.Module]] = {
     part.__name__: part
@@ -77,6 +81,8 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
         *(TwoHeights, Agreement),
+        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised),
+        *(Follower, FollowerRoles, Leader),
         *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
         *(Fixed, ScaledMax, Sigma),

@@ -1,0 +1,53 @@
+"""A mission through a monitor: what it flags, and where it believes to be."""
+
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.monitor.monitor import Monitor, MonitorState
+from sensorfault.numerics.local import east_north
+from sensorfault.run import samples
+from sensorfault.studies.xu2023.scenario import Scenario
+from sensorfault.types import FAULT, Residual, Sample
+
+
+class Flown(NamedTuple):
+    """Of each tick: which of the L ranges are flagged, the residual, and how far off the position is [m]."""
+
+    flagged: Bool[np.ndarray, "T L"]
+    residual: Residual
+    off_m: Float[np.ndarray, " T"]
+
+
+@jax.jit
+def _through(monitor: Monitor, rows: Sample) -> tuple[Array, Any, Array]:
+    def one(state: MonitorState, sample: Sample) -> tuple[MonitorState, tuple[Array, Any, Array]]:
+        state, report = monitor.step(state, sample)
+        return state, (report.verdict.channel, report.residual, state.residual.mean)
+
+    told: tuple[Array, Any, Array] = lax.scan(one, monitor.init(), rows)[1]
+    return told
+
+
+@jax.jit
+def _away(at: Float[Array, "T 2"], true: Float[Array, "T 2"]) -> Float[Array, " T"]:
+    return jnp.hypot(*jax.vmap(lambda a, b: east_north(*a, *b))(at, true).T)
+
+
+def through(monitor: Monitor, case: Scenario) -> Flown:
+    """The whole mission from a fresh start."""
+    channel, residual, at = _through(monitor, samples(case.log.time, case.log.value, case.log.fresh))
+    ranges = [i for i, channel in enumerate(case.log.channels) if channel.name == "range"]
+    flagged = (np.asarray(channel)[:, ranges] == FAULT) & ~np.isnan(case.error)
+    return Flown(flagged, jax.tree.map(np.asarray, residual), np.asarray(_away(at, jnp.asarray(case.position))))
+
+
+def table(flagged: Bool[np.ndarray, "T L"], case: Scenario) -> Float[np.ndarray, "4"]:
+    """TP, TN, FP, FN of the judged ranges. Xu et al. 2023, section 4.2."""
+    there = ~np.isnan(case.error) & case.judged[:, None]
+    told, wrong = flagged[there], case.wrong[there]
+    return np.array([np.sum(told & wrong), np.sum(~told & ~wrong), np.sum(told & ~wrong), np.sum(~told & wrong)], float)

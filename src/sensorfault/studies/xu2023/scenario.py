@@ -1,0 +1,97 @@
+"""The mission of Xu et al. 2023: which ranges lie, and how much is wrong with each."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.faults.fault import Fault
+from sensorfault.faults.inject import inject
+from sensorfault.logs.table import Log
+from sensorfault.simulation.acoustic import Ranging
+from sensorfault.simulation.underwater import Mission, sail
+
+DURATION_S, TRAINED_S = 1700.0, 600.0
+WRONG_M = 9.0  # T1: a range further off than this is anomalous
+ANOMALIES = (51, 6)  # of each leader, in the judged part
+PRINTED = (
+    Fault("jam", "leader1", "range", 100.0, 50.0),
+    Fault("jam", "leader2", "range", 400.0, 50.0),
+    Fault("drift", "leader1", "range", 1100.0, 70.0, 0.5),
+)
+LONGEST_S = 60.0  # of the freezes that make up the number
+RANGING = Ranging(lost=0.015)
+FAST = replace(RANGING, sigma_m=1.0, period_s=2.35)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """`error`: of each range, L leaders, as GPS would show it [m]; NaN where none arrived. `position`: true [rad]."""
+
+    log: Log
+    error: Float[np.ndarray, "T L"]
+    position: Float[np.ndarray, "T 2"]
+    faults: tuple[Fault, ...]
+
+    @property
+    def wrong(self) -> Bool[np.ndarray, "T L"]:
+        """The ranges that are anomalous."""
+        return np.asarray(np.abs(self.error) > WRONG_M)
+
+    @property
+    def judged(self) -> Bool[np.ndarray, " T"]:
+        """The rows that are judged."""
+        return np.asarray(self.log.time >= TRAINED_S)
+
+
+def scenario(seed: int, ranging: Ranging = RANGING) -> Scenario:
+    """A simulated mission with the paper's faults."""
+    return struck(sail(DURATION_S, seed, ranging), seed)
+
+
+def struck(mission: Mission, seed: int, wrong_m: float = WRONG_M) -> Scenario:
+    """The mission with the printed faults, and freezes of a leader at random until it has as many wrong ranges as were
+    printed, or as near as it gets.
+    """
+    rng = np.random.default_rng([seed, 2023])
+    faults = list(PRINTED)
+    for j, wanted in enumerate(ANOMALIES):
+        for _ in range(200):
+            missing = wanted - _count(mission, faults, j, wrong_m)
+            if missing <= 0:
+                break
+            start, longest = rng.uniform(TRAINED_S, DURATION_S - LONGEST_S), rng.uniform(20.0, LONGEST_S)
+            if _free(faults, f"leader{j + 1}", start, longest):
+                faults += _freeze(mission, faults, j, (start, longest), missing, wrong_m)
+    done = inject(mission.log, faults, seed)
+    return Scenario(done.log, error(done.log, mission.truth), mission.truth.value[:, :2], done.truth)
+
+
+def error(log: Log, truth: Log) -> Float[np.ndarray, "T L"]:
+    """How far off each range is [m], NaN where none arrived."""
+    columns = [i for i, channel in enumerate(log.channels) if channel.name == "range"]
+    told = np.where(log.fresh[:, columns], log.value[:, columns], np.nan)
+    return np.asarray(told - truth.value[:, columns])
+
+
+def _count(mission: Mission, faults: list[Fault], j: int, wrong_m: float) -> int:
+    off = error(inject(mission.log, faults).log, mission.truth)[mission.log.time >= TRAINED_S, j]
+    return int((np.abs(off) > wrong_m).sum())
+
+
+def _free(faults: list[Fault], sensor: str, start: float, length: float) -> bool:
+    """Whether nothing else is wrong with that leader from a while before until a while after."""
+    return all(f.sensor != sensor or start > f.end_s + 15 or start + length < f.start_s - 15 for f in faults)
+
+
+def _freeze(
+    mission: Mission, faults: list[Fault], j: int, when: tuple[float, float], missing: int, wrong_m: float
+) -> list[Fault]:
+    """A freeze that makes wrong ranges, and no more than are missing; none if there is no such."""
+    before = _count(mission, faults, j, wrong_m)
+    for length in np.arange(when[1], 10.0, -2.5):
+        frozen = Fault("jam", f"leader{j + 1}", "range", when[0], float(length))
+        more = _count(mission, [*faults, frozen], j, wrong_m) - before
+        if more <= missing:
+            return [frozen] if more > 0 else []
+    return []

@@ -1,0 +1,112 @@
+"""Ranges whose error is known, to learn from: by the fixes of a log, and by faults injected into it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.faults.fault import Fault
+from sensorfault.faults.inject import inject
+from sensorfault.logs.table import Log
+from sensorfault.logs.units import from_si
+from sensorfault.monitor.monitor import Monitor
+from sensorfault.numerics.innovation import features
+from sensorfault.replay import Numbers
+from sensorfault.run import replay, samples
+from sensorfault.training.fuzzy import Labelled
+from sensorfault.types import Report, Sample
+from sensorfault.vehicles.underwater import Follower
+
+EVERY_S = 120.0  # one fault on each leader in so long
+LONGEST_S = (20.0, 70.0)
+BIAS, DRIFT = (3.0, 10.0), (0.1, 0.25)  # in standard deviations of a range; a second
+KINDS = ("jam", "jam", "drift", "bias")
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """`error`: how far off each of the L ranges is [m], NaN where that is not known."""
+
+    log: Log
+    error: Float[np.ndarray, "T L"]
+
+
+class _Tape(NamedTuple):
+    value: Float[Numbers, "T C"]
+    variance: Float[Numbers, "T C"]
+    noise: Float[Numbers, "T C"]
+    valid: Bool[Numbers, "T C"]
+
+
+def surfaced(log: Log, vehicle: Follower) -> Float[np.ndarray, "T L"]:
+    """How far off each range is by the position and the leader's at its tick, NaN where one is missing [m]; (26)."""
+    rows = samples(log.time, log.value, log.fresh)
+    expected = np.asarray(jax.jit(jax.vmap(_by_fix, in_axes=(None, 0)))(vehicle, rows))
+    ranges = list(vehicle.observed)
+    northward, eastward = vehicle.roles.position
+    fixed = log.fresh[:, northward] & log.fresh[:, eastward]
+    return np.where(fixed[:, None] & log.fresh[:, ranges], log.value[:, ranges] - expected, np.nan)
+
+
+def _by_fix(vehicle: Follower, sample: Sample) -> Float[Array, " L"]:
+    told = vehicle.expected(vehicle.start(sample)[0], sample)
+    return jnp.where(vehicle.ready(sample), told, jnp.nan)
+
+
+def submerged(log: Log, columns: Sequence[int]) -> Log:
+    """The log with no fix after the first, as it will be under water."""
+    first = int(log.fresh[:, list(columns)].all(axis=1).argmax())
+    hidden = np.zeros(log.value.shape, bool)
+    hidden[first + 1 :, list(columns)] = True
+    return replace(log, value=np.where(hidden, np.nan, log.value), fresh=log.fresh & ~hidden)
+
+
+def spoiled(lesson: Lesson, vehicle: Follower, sigma_m: float, seed: int) -> Lesson:
+    """The same log with faults on every leader's ranges: jams, drifts and biases at random."""
+    rng = np.random.default_rng([seed, 9])
+    log, ranges = lesson.log, list(vehicle.observed)
+    faults = [fault for column in ranges for fault in _faults(log, column, sigma_m, rng)]
+    done = inject(log, faults, seed).log
+    return Lesson(done, lesson.error + np.nan_to_num(done.value[:, ranges] - log.value[:, ranges]))
+
+
+def _faults(log: Log, column: int, sigma_m: float, rng: np.random.Generator) -> list[Fault]:
+    channel, heard = log.channels[column], log.time[log.fresh[:, column]]
+    unit = float(from_si(1.0, channel.unit))
+    faults = []
+    for start in np.arange(log.time[0], log.time[-1] - EVERY_S, EVERY_S) + rng.uniform(0, EVERY_S / 3):
+        kind, length = str(rng.choice(KINDS)), float(rng.uniform(*LONGEST_S))
+        if not ((heard >= start) & (heard < start + length)).any():
+            continue
+        size = {"jam": 0.0, "drift": rng.uniform(*DRIFT), "bias": rng.uniform(*BIAS)}[kind] * sigma_m * unit
+        sign = float(rng.choice((-1, 1)))
+        faults.append(Fault(kind, channel.sensor, channel.name, float(start), length, float(sign * size)))
+    return faults
+
+
+def labelled(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> list[Labelled]:
+    """Of each leader the features of its innovations (N, 3) and the sizes of the errors (N,) [m], all logs together."""
+    features_of: list[list[Float[np.ndarray, "n 3"]]] = [[] for _ in vehicle.observed]
+    sizes: list[list[Float[np.ndarray, " n"]]] = [[] for _ in vehicle.observed]
+    for lesson in lessons:
+        rows = samples(lesson.log.time, lesson.log.value, lesson.log.fresh)
+        tape = _Tape(*(np.asarray(x) for x in _told(monitor, rows)))
+        for j, column in enumerate(vehicle.observed):
+            told = tape.valid[:, column] & np.isfinite(lesson.error[:, j])
+            features_of[j].append(features(*(x[told, column] for x in tape[:3])))
+            sizes[j].append(np.abs(lesson.error[told, j]))
+    return [(np.concatenate(f), np.concatenate(s)) for f, s in zip(features_of, sizes, strict=True)]
+
+
+@jax.jit
+def _told(monitor: Monitor, rows: Sample) -> _Tape:
+    return replay(monitor, monitor.init(), rows, _features)[1]
+
+
+def _features(report: Report) -> _Tape:
+    residual = report.residual
+    return _Tape(residual.value, jnp.diagonal(residual.cov), residual.noise, residual.valid)

@@ -1,0 +1,161 @@
+"""A vehicle under water that reckons its way and hears from leaders how far away they are."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from sensorfault.logs.table import Channel, Log
+from sensorfault.logs.units import si_unit
+from sensorfault.numerics.columns import picked
+from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
+from sensorfault.numerics.local import east_north, on_the_map
+from sensorfault.types import Sample
+
+UNKNOWN_SPEED = 2.0  # standard deviation of a velocity that nothing measures [m/s]
+LOST_M = 2000.0  # with a position no better than this, ranges do not bring it back
+_POSITIONS = (("latitude", "longitude", "rad"), ("north", "east", "m"), ("y", "x", "m"))
+
+
+class Leader(eqx.Module):
+    """Columns of one leader: the range to it, where it says it is (north or latitude first), and how deep."""
+
+    range: int = eqx.field(static=True)
+    position: tuple[int, ...] = eqx.field(static=True)
+    depth: int | None = eqx.field(static=True, default=None)
+
+
+class FollowerRoles(eqx.Module):
+    """Columns of a log by what they say of a follower; empty or None where the log does not say it.
+
+    `position`: north or latitude first, of a sensor without a range: where the follower begins. `velocity`: forward
+    and to the right. `geodetic`: positions are latitudes and longitudes, else metres on a plane.
+    """
+
+    leaders: tuple[Leader, ...] = ()
+    position: tuple[int, ...] = eqx.field(static=True, default=())
+    velocity: tuple[int, ...] = eqx.field(static=True, default=())
+    heading: int | None = eqx.field(static=True, default=None)
+    depth: int | None = eqx.field(static=True, default=None)
+    geodetic: bool = eqx.field(static=True, default=True)
+
+
+def roles(log: Log) -> FollowerRoles:
+    """A leader is a sensor with a `range` [m] and a position; the rest are the first channels of each name and unit.
+
+    A position is `latitude` and `longitude`, or `north` and `east` or `y` and `x` in metres, all of one kind.
+    """
+    sensors = list(dict.fromkeys(c.sensor for c in log.channels))
+    for northward, eastward, unit in _POSITIONS:
+        placed = {s: _position(log, s, northward, eastward, unit) for s in sensors}
+        ranges = {s: _named(log.channels, ("range",), "m", s) for s in sensors}
+        leaders = tuple(
+            Leader(ranges[s], placed[s], _named(log.channels, ("depth",), "m", s))  # type: ignore[arg-type]
+            for s in sensors
+            if ranges[s] is not None and placed[s]
+        )
+        if leaders:
+            break
+    ahead = _named(log.channels, ("forward", "surge"), "m/s")
+    aside = _named(log.channels, ("right", "starboard"), "m/s")
+    others = [s for s in sensors if ranges[s] is None]
+    return FollowerRoles(
+        leaders=leaders,
+        position=next((placed[s] for s in others if placed[s]), ()),
+        velocity=() if ahead is None or aside is None else (ahead, aside),
+        heading=_named(log.channels, ("heading", "yaw"), "rad"),
+        depth=next((d for s in others if (d := _named(log.channels, ("depth",), "m", s)) is not None), None),
+        geodetic=unit == "rad",
+    )
+
+
+def _named(channels: tuple[Channel, ...], names: tuple[str, ...], unit: str, sensor: str | None = None) -> int | None:
+    found = (
+        i for i, c in enumerate(channels) if c.name in names and si_unit(c.unit) == unit and sensor in (None, c.sensor)
+    )
+    return next(found, None)
+
+
+def _position(log: Log, sensor: str, northward: str, eastward: str, unit: str) -> tuple[int, ...]:
+    both = [_named(log.channels, (name,), unit, sensor) for name in (northward, eastward)]
+    return () if None in both else tuple(both)  # type: ignore[arg-type]
+
+
+class Follower(eqx.Module):
+    """State: latitude and longitude [rad], or north and east [m]. Xu et al. 2023, (1)-(5), on the ellipsoid itself.
+
+    The way to a leader is a difference of angles times the radii between the two: the absolute longitudes of (3) and
+    (4), each times a radius of its own, would make 563 m of 300 m to the north at 45 degrees. Ranges are slant ranges,
+    so the depths stand in h. `q`: variance that one second of dead reckoning adds [m²/s]; `start_m`: standard deviation
+    of the fix it begins at.
+    """
+
+    q: Float[Array, ""]
+    start_m: Float[Array, ""]
+    roles: FollowerRoles
+
+    @property
+    def observed(self) -> tuple[int, ...]:
+        """Columns of the ranges."""
+        return tuple(leader.range for leader in self.roles.leaders)
+
+    def start(self, sample: Sample) -> tuple[Float[Array, "2"], Float[Array, "2"], Bool[Array, ""]]:
+        state = picked(sample.value, self.roles.position)
+        spread = self.start_m / self._metres(state)
+        return state, spread, picked(sample.fresh, self.roles.position).all() & self._there(state)
+
+    def ahead(self, state: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]) -> Float[Array, "2"]:
+        if not self.roles.velocity or self.roles.heading is None:
+            return state
+        v, w = picked(sample.value, self.roles.velocity)
+        heading = sample.value[self.roles.heading]
+        c, s = jnp.cos(heading), jnp.sin(heading)
+        # (1) L⁺ = L + Δt (v cos θ - ω sin θ) / R_M,  λ⁺ = λ + Δt (v sin θ + ω cos θ) / (R_N cos L)
+        way = jnp.stack([v * c - w * s, v * s + w * c]) * dt
+        return state + jnp.where(self._reckoned(sample), way, 0.0) / self._metres(state)
+
+    def noise(self, state: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]) -> Float[Array, "2"]:
+        told = jnp.sqrt(self.q * dt)
+        return jnp.where(self._reckoned(sample), told, UNKNOWN_SPEED * dt + told) / self._metres(state)
+
+    def expected(self, state: Float[Array, "2"], sample: Sample) -> Float[Array, " M"]:
+        ranges = []
+        for leader in self.roles.leaders:
+            at = picked(sample.value, leader.position)
+            away = east_north(*at, *state) if self.roles.geodetic else at - state
+            deeper = jnp.zeros(())
+            if leader.depth is not None and self.roles.depth is not None:
+                deeper = sample.value[leader.depth] - sample.value[self.roles.depth]
+            # (3), (4) r = √(Δn² + Δe² + Δh²)
+            ranges.append(jnp.sqrt((away**2).sum() + deeper**2))
+        return jnp.stack(ranges)
+
+    def ready(self, sample: Sample) -> Bool[Array, " M"]:
+        known = []
+        for leader in self.roles.leaders:
+            needed = [*leader.position]
+            if leader.depth is not None and self.roles.depth is not None:
+                needed += [leader.depth, self.roles.depth]
+            known.append(
+                picked(sample.present, tuple(needed)).all() & self._there(picked(sample.value, leader.position))
+            )
+        return jnp.stack(known)
+
+    def lost(self, state: Float[Array, "2"], spread: Float[Array, "2"]) -> Bool[Array, ""]:
+        return (spread * self._metres(state)).max() > LOST_M
+
+    def _there(self, position: Float[Array, "2"]) -> Bool[Array, ""]:
+        return on_the_map(*position) if self.roles.geodetic else jnp.isfinite(position).all()
+
+    def _reckoned(self, sample: Sample) -> Bool[Array, ""]:
+        """Whether velocity and heading are there."""
+        if not self.roles.velocity or self.roles.heading is None:
+            return jnp.ones((), bool)  # a random walk: q says it all
+        return picked(sample.present, (*self.roles.velocity, self.roles.heading)).all()
+
+    def _metres(self, state: Float[Array, "2"]) -> Float[Array, "2"]:
+        """How many metres one unit of the state is, to the north and to the east."""
+        if not self.roles.geodetic:
+            return jnp.ones(2)
+        # R_N = a / √(1 - e² sin²L),  R_M = R_N³ (1 - e²) / a²
+        n = SEMI_MAJOR_AXIS / jnp.sqrt(1 - ECCENTRICITY_SQUARED * jnp.sin(state[0]) ** 2)
+        return jnp.stack([n**3 * (1 - ECCENTRICITY_SQUARED) / SEMI_MAJOR_AXIS**2, n * jnp.cos(state[0])])
