@@ -20,7 +20,8 @@ from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
 from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
-from sensorfault.training.fuzzy import Labelled, Setting, fit_anfis
+from sensorfault.training.fuzzy import Setting, fit_anfis
+from sensorfault.training.labelled import Labelled
 from sensorfault.training.session import Session
 from sensorfault.vehicles.underwater import FollowerRoles
 

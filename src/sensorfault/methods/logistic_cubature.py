@@ -18,7 +18,7 @@ from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
 from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
-from sensorfault.training.fuzzy import Labelled
+from sensorfault.training.labelled import Labelled
 from sensorfault.training.logistic import fit_logistic
 from sensorfault.training.session import Session
 from sensorfault.vehicles.underwater import FollowerRoles

@@ -18,7 +18,7 @@ from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.replay import replay_log
 from sensorfault.training.cubature import likeliest
-from sensorfault.training.fuzzy import Labelled
+from sensorfault.training.labelled import Labelled
 from sensorfault.training.ranges import Lesson, labelled, spoiled, submerged, surfaced
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, roles
 

@@ -17,7 +17,7 @@ from sensorfault.monitor.monitor import Monitor
 from sensorfault.numerics.innovation import features
 from sensorfault.replay import Numbers
 from sensorfault.run import replay, samples
-from sensorfault.training.fuzzy import Labelled
+from sensorfault.training.labelled import Labelled
 from sensorfault.types import Report, Sample
 from sensorfault.vehicles.underwater import Follower
 
@@ -99,7 +99,7 @@ def labelled(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> 
             told = tape.valid[:, column] & np.isfinite(lesson.error[:, j])
             features_of[j].append(features(*(x[told, column] for x in tape[:3])))
             sizes[j].append(np.abs(lesson.error[told, j]))
-    return [(np.concatenate(f), np.concatenate(s)) for f, s in zip(features_of, sizes, strict=True)]
+    return [Labelled(np.concatenate(f), np.concatenate(s)) for f, s in zip(features_of, sizes, strict=True)]
 
 
 @jax.jit
