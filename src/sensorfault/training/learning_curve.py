@@ -1,6 +1,7 @@
 """How much there must be to learn from: what is learned from parts of the labelled rows, judged on others."""
 
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -11,20 +12,21 @@ from sensorfault.training.labelled import Labelled
 SIZES = (25, 50, 100, 200, 400)
 
 Answer = Callable[[Float[np.ndarray, "M F"]], Float[np.ndarray, " M"]]
+Told = TypeVar("Told")
 
 
 def learning_curve(
     fit: Callable[[Labelled], Answer],
-    judge: Callable[[Float[np.ndarray, " M"], Float[np.ndarray, " M"]], float],
+    judge: Callable[[Float[np.ndarray, " M"], Float[np.ndarray, " M"]], Told],
     learn: Labelled,
     test: Labelled,
     sizes: Sequence[int] = SIZES,
     draws: int = 5,
     seed: int = 0,
-) -> Float[np.ndarray, "sizes draws"]:
-    """judge(answers, targets) on the test rows, of what is learned from so many of the rows, drawn by chance.
+) -> list[tuple[int, Told]]:
+    """Each size, and judge(answers, targets) on the test rows of what is learned from so many rows drawn by chance.
 
-    NaN where the draw could not be learned from (no anomaly among 25 rows, say). The draws of one size are nested in
+    Nothing where a draw cannot be learned from (no anomaly among 25 rows, say). The draws of one size are nested in
     those of the next, so that a curve shows what more rows add.
 
     Raises:
@@ -33,14 +35,14 @@ def learning_curve(
     rows = len(learn.target)
     if max(sizes) > rows:
         raise LogError(f"{rows} labelled rows are fewer than {max(sizes)}; give more, or learn from fewer.")
-    told = np.full((len(sizes), draws), np.nan)
+    told = list[tuple[int, Told]]()
     for d in range(draws):
         order = np.random.default_rng((seed, d)).permutation(rows)
-        for s, size in enumerate(sizes):
+        for size in sizes:
             part = order[:size]
             try:
                 answer = fit(Labelled(learn.features[part], learn.target[part]))
             except LogError:
                 continue
-            told[s, d] = judge(answer(test.features), test.target)
+            told.append((size, judge(answer(test.features), test.target)))
     return told
