@@ -24,10 +24,10 @@ def learning_curve(
     draws: int = 5,
     seed: int = 0,
 ) -> list[tuple[int, Told]]:
-    """Each size, and judge(answers, targets) on the test rows of what is learned from so many rows drawn by chance.
+    """Each size, the least first, and judge(answers, targets) on the test rows of what so many rows teach.
 
-    Nothing where a draw cannot be learned from (no anomaly among 25 rows, say). The draws of one size are nested in
-    those of the next, so that a curve shows what more rows add.
+    Rows are drawn by chance, those of one size among those of the next, so that a curve shows what more rows add.
+    Nothing is told where a draw cannot be learned from (no anomaly among 25 rows, say).
 
     Raises:
         LogError: fewer rows than the largest size.
@@ -45,4 +45,4 @@ def learning_curve(
             except LogError:
                 continue
             told.append((size, judge(answer(test.features), test.target)))
-    return told
+    return sorted(told, key=lambda one: one[0])

@@ -12,7 +12,9 @@ from sensorfault.studies.findings import Figure, Json, Row
 from sensorfault.training.labelled import Labelled
 
 SYMBOLS = ("|r|", "M²", "R*")
+LOGARITHMS = {"M²": (-2, 3), "R*": (0.8, 3.8)}  # powers of ten that are shown
 PAIRS = ((0, 1), (0, 2), (1, 2))
+CORNER = (-1.6, -1.6, 1.0)  # from where most of what was learned from is in front
 FINE = 31  # points along each side of a surface
 COLORS = ("#2a6fb0", "#c0562f", "#3d8a4d", "#8a5fa8")
 
@@ -66,7 +68,8 @@ def surface(name: str, title: str, model: Anfis, seen: Labelled) -> Figure:
             "domain": {"x": [s / 3, (s + 0.96) / 3]},
             "xaxis": {"title": {"text": SYMBOLS[i]}},
             "yaxis": {"title": {"text": SYMBOLS[j]}},
-            "zaxis": {"title": {"text": "error [m]"}, "range": [0, highest]},
+            "zaxis": {"title": {"text": "[m]"}, "range": [0, highest]},
+            "camera": {"eye": dict(zip("xyz", CORNER, strict=True))},
         }
     caption = (
         "The paper's figure 12, with what was learned from as points. R* is R max(1, M²), and M² grows with |r|, so "
@@ -94,7 +97,7 @@ def features(
         for word, seen, color in (("CKF", plain, COLORS[0]), ("ACKF", adaptive, COLORS[1])):
             line = _line(word, time, seen[:, i]) | {"yaxis": f"y{axis}", "line": {"color": color}}
             data.append(line | {"legendgroup": word, "showlegend": not i})
-        scale: Json = {"type": "log"} if i else {}
+        scale: Json = {"type": "log", "range": LOGARITHMS[symbol]} if i else {}
         domain = [0.69 - 0.345 * i, 1.0 - 0.345 * i]
         unit = " [m]" if i == 0 else " [m²]" if i == 2 else ""
         layout[f"yaxis{axis}"] = {"title": {"text": symbol + unit}, "domain": domain} | scale
@@ -105,6 +108,7 @@ def features(
 def learning(name: str, title: str, rows: Sequence[Row], metric: str = "accuracy") -> Figure:
     """What more rows add, a line a method; of rows whose condition ends in n25, n50, and so on."""
     mine = [row for row in rows if row.metric == metric and _rows_of(row)]
+    sizes = sorted({_rows_of(row) for row in mine})
     data: list[Json] = []
     for key in dict.fromkeys((row.method, _variant(row)) for row in mine):
         of = sorted((row for row in mine if (row.method, _variant(row)) == key), key=_rows_of)
@@ -114,7 +118,7 @@ def learning(name: str, title: str, rows: Sequence[Row], metric: str = "accuracy
         bars: Json = {"type": "data", "array": [round(row.spread or 0.0, 4) for row in of]}
         data.append(line | {"mode": "lines+markers", "error_y": bars})
     layout: Json = {
-        "xaxis": {"title": {"text": "ranges to learn from"}, "type": "log"},
+        "xaxis": {"title": {"text": "ranges to learn from"}, "type": "log"} | {"tickvals": sizes, "ticktext": sizes},
         "yaxis": {"title": {"text": metric}},
     }
     caption = (
