@@ -11,6 +11,7 @@ from sensorfault.methods.ranged import (
     cubature,
     fitted,
     followed,
+    learned,
     lessons,
     model,
     monitor,
@@ -33,12 +34,12 @@ def anfis(
     log: Log,
     found: FollowerRoles,
     filter: Filter,
-    learned: Sequence[Labelled],
+    labelled: Sequence[Labelled],
     rmse: bool,
     setting: Setting = RULES,
 ) -> Model:
     """With rules learned from these ranges, one set a leader. T2 is 3 RMSE of the training, else that of an anomaly."""
-    fits = [fit_anfis(*of_leader, setting) for of_leader in learned]
+    fits = [fit_anfis(*of_leader, setting) for of_leader in labelled]
     limits = np.array([3 * fit.rmse for fit in fits]) if rmse else np.full(len(fits), WRONG * filter.sigma_m)
     test = FuzzyInference(tuple(fit.model for fit in fits), tuple(leader.range for leader in found.leaders))
     heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, limits)))
@@ -54,7 +55,7 @@ def _recipe(rmse: bool) -> Recipe:
         session.tell("fitting the noise of ranges and dead reckoning")
         own = fitted(log, found, Filter())
         session.tell("learning rules")
-        return anfis(name, log, found, own, lessons(log, found, own, seed), rmse)
+        return anfis(name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)), rmse)
 
     limit = "3 times the training's RMSE" if rmse else "3 standard deviations of a range, 9 m of 3 m"
     return Recipe(

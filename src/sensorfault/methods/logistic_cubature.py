@@ -9,6 +9,7 @@ from sensorfault.methods.ranged import (
     cubature,
     fitted,
     followed,
+    learned,
     lessons,
     model,
     monitor,
@@ -24,10 +25,10 @@ from sensorfault.training.session import Session
 from sensorfault.vehicles.underwater import FollowerRoles
 
 
-def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, learned: Sequence[Labelled]) -> Model:
+def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, labelled: Sequence[Labelled]) -> Model:
     """With odds learned from these ranges, one regression a leader."""
     wrong_m = WRONG * filter.sigma_m
-    models = tuple(fit_logistic(features, size > wrong_m) for features, size in learned)
+    models = tuple(fit_logistic(features, size > wrong_m) for features, size in labelled)
     test = LogisticRegression(models, tuple(leader.range for leader in found.leaders))
     heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, 0.0)))
     return model(name, log, found, heard, ("log odds",), filter, {"wrong_m": wrong_m})
@@ -38,7 +39,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     session.tell("fitting the noise of ranges and dead reckoning")
     own = fitted(log, found, Filter())
     session.tell("learning odds")
-    return logistic(RECIPE.name, log, found, own, lessons(log, found, own, seed))
+    return logistic(RECIPE.name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)))
 
 
 RECIPE = Recipe(

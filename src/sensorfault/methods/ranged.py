@@ -1,5 +1,6 @@
 """What the methods share that judge a follower's ranges: the filter, the monitor around it, and what is learned."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -107,23 +108,26 @@ def on_ranges(log: Log, found: FollowerRoles, limits: float | Float[np.ndarray, 
 
 def fitted(log: Log, found: FollowerRoles, filter: Filter) -> Filter:
     """The filter with the noise that makes the innovations of this log likeliest; exact repeats say nothing of it."""
-    plain = replace(filter, adaptive=False, growth=0.0, repeated=1e4)
+    plain = replace(filter, adaptive=True, growth=0.0, repeated=1e6)
     under = submerged(log, found.position)
     q, sigma_m = likeliest(lambda q, sigma: monitor(log, _cubature(log, found, plain, q, sigma)), under)
     return replace(filter, q=q, sigma_m=sigma_m)
 
 
-def lessons(log: Log, found: FollowerRoles, filter: Filter, seed: int) -> list[Labelled]:
-    """Features and errors of each leader's ranges, from the log as it is and copies of it with faults.
+def lessons(log: Log, found: FollowerRoles, filter: Filter, seed: int) -> list[Lesson]:
+    """The log as it is and copies of it with faults, and how far off each range is.
 
     The errors are those that the log's fixes show; ranges without a fix are taken for right before faults come in.
     """
+    vehicle: Follower = cubature(log, found, filter).vehicle
+    known = Lesson(submerged(log, found.position), np.nan_to_num(surfaced(log, vehicle)))
+    return [known, *(spoiled(known, vehicle, filter.sigma_m, seed + i) for i in range(COPIES))]
+
+
+def learned(log: Log, found: FollowerRoles, filter: Filter, of: Sequence[Lesson]) -> list[Labelled]:
+    """Features and errors of each leader's ranges."""
     residual = cubature(log, found, filter)
-    vehicle: Follower = residual.vehicle
-    under = submerged(log, found.position)
-    known = Lesson(under, np.nan_to_num(surfaced(log, vehicle)))
-    faulty = [spoiled(known, vehicle, filter.sigma_m, seed + i) for i in range(COPIES)]
-    return labelled(monitor(log, residual), [known, *faulty], vehicle)
+    return labelled(monitor(log, residual), of, residual.vehicle)
 
 
 def model(

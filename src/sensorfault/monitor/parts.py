@@ -30,6 +30,7 @@ from sensorfault.monitor.statistic.agreement import Agreement
 from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
 from sensorfault.monitor.statistic.cusum import Cusum
 from sensorfault.monitor.statistic.deficit import Deficit
+from sensorfault.monitor.statistic.double_threshold import DoubleThreshold
 from sensorfault.monitor.statistic.ewma import Ewma
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
@@ -81,7 +82,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
         *(TwoHeights, Agreement),
-        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised),
+        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised, DoubleThreshold),
         *(Follower, FollowerRoles, Leader),
         *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),

@@ -65,7 +65,7 @@ def _beside(
     swing = np.zeros((len(time), 2))
     for period in rng.uniform(300, 1200, 2):
         phase = rng.uniform(0, 2 * np.pi, 2)
-        speed = rng.uniform(0.5, 1.0)
+        speed = rng.uniform(0.7, 1.2)
         swing += speed * period / (2 * np.pi) * np.sin(2 * np.pi * time[:, None] / period + phase)
     return np.column_stack([follower[:, :2] + off + swing, np.full(len(time), rng.uniform(2, 10))])
 

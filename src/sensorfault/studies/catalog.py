@@ -7,6 +7,7 @@ from sensorfault.studies.findings import Effort, Findings
 from sensorfault.studies.min2021.study import study as min2021
 from sensorfault.studies.multistep.study import study as multistep
 from sensorfault.studies.niu1998.study import study as niu1998
+from sensorfault.studies.xu2023.study import study as xu2023
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,13 @@ STUDIES: dict[str, Study] = {
                 "D-slow": "Slow drift against a barometer, over a minute or more",
                 "D-who": "Who is accused when a height drifts",
             },
+        ),
+        Study(
+            "xu2023",
+            "Ranges under water that lie, and fuzzy rules that foretell by how much",
+            "Xu et al. 2023",
+            xu2023,
+            {"E": "Two leaders, one follower"},
         ),
     )
 }

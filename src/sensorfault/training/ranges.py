@@ -90,16 +90,31 @@ def _faults(log: Log, column: int, sigma_m: float, rng: np.random.Generator) -> 
 
 def labelled(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> list[Labelled]:
     """Of each leader the features of its innovations (N, 3) and the sizes of the errors (N,) [m], all logs together."""
-    features_of: list[list[Float[np.ndarray, "n 3"]]] = [[] for _ in vehicle.observed]
-    sizes: list[list[Float[np.ndarray, " n"]]] = [[] for _ in vehicle.observed]
+    runs = innovations(monitor, lessons, vehicle)
+    return [
+        Labelled(np.concatenate([features(*run.tape) for run in of]), np.concatenate([np.abs(run.error) for run in of]))
+        for of in runs
+    ]
+
+
+@dataclass(frozen=True)
+class Run:
+    """The innovations of one leader in one log whose errors are known: value [m], variance and noise [m²]; errors."""
+
+    tape: tuple[Float[np.ndarray, " n"], ...]
+    error: Float[np.ndarray, " n"]
+
+
+def innovations(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> list[list[Run]]:
+    """By leader, then by log."""
+    runs: list[list[Run]] = [[] for _ in vehicle.observed]
     for lesson in lessons:
         rows = samples(lesson.log.time, lesson.log.value, lesson.log.fresh)
         tape = _Tape(*(np.asarray(x) for x in _told(monitor, rows)))
         for j, column in enumerate(vehicle.observed):
-            told = tape.valid[:, column] & np.isfinite(lesson.error[:, j])
-            features_of[j].append(features(*(x[told, column] for x in tape[:3])))
-            sizes[j].append(np.abs(lesson.error[told, j]))
-    return [Labelled(np.concatenate(f), np.concatenate(s)) for f, s in zip(features_of, sizes, strict=True)]
+            told = np.asarray(tape.valid)[:, column] & np.isfinite(lesson.error[:, j])
+            runs[j].append(Run(tuple(np.asarray(x)[told, column] for x in tape[:3]), lesson.error[told, j]))
+    return runs
 
 
 @jax.jit

@@ -51,3 +51,36 @@ def table(flagged: Bool[np.ndarray, "T L"], case: Scenario) -> Float[np.ndarray,
     there = ~np.isnan(case.error) & case.judged[:, None]
     told, wrong = flagged[there], case.wrong[there]
     return np.array([np.sum(told & wrong), np.sum(~told & ~wrong), np.sum(told & ~wrong), np.sum(~told & wrong)], float)
+
+
+def scores(four: Float[np.ndarray, "4"], run: Flown, case: Scenario, gated: bool = True) -> dict[str, float]:
+    """Table 2, equations (36)-(40), and how far off the position is over the judged part; that alone if not `gated`."""
+    p50, p90, p95 = np.percentile(run.off_m[case.judged], (50, 90, 95))
+    place = {"error_p50_m": float(p50), "error_p90_m": float(p90), "error_p95_m": float(p95)}
+    if not gated:
+        return place
+    tp, tn, fp, fn = four
+    precision, recall = tp / max(tp + fp, 1), tp / max(tp + fn, 1)
+    return {
+        "tp": tp,
+        "tn": tn,
+        "fp": fp,
+        "fn": fn,
+        "accuracy": (tp + tn) / four.sum(),
+        "precision": precision,
+        "recall": recall,
+        "f1": 2 * precision * recall / max(precision + recall, 1e-9),
+        "fpr": fp / (tn + fp),
+        "fnr": 1 - recall,
+        "rejected_fraction": (tp + fp) / four.sum(),
+        **place,
+    }
+
+
+def lockout_s(flagged: Bool[np.ndarray, "T L"], case: Scenario, since_s: float) -> float:
+    """The longest time after `since_s` in which every range that came was refused [s]."""
+    came = ~np.isnan(case.error)
+    rows = came.any(axis=1) & (case.log.time >= since_s)
+    taken = (came & ~flagged)[rows].any(axis=1)
+    times = np.concatenate([[since_s], case.log.time[rows][taken], case.log.time[rows][-1:]])
+    return float(np.diff(times).max())

@@ -56,7 +56,7 @@ def struck(mission: Mission, seed: int, wrong_m: float = WRONG_M) -> Scenario:
     rng = np.random.default_rng([seed, 2023])
     faults = list(PRINTED)
     for j, wanted in enumerate(ANOMALIES):
-        for _ in range(200):
+        for _ in range(400):
             missing = wanted - _count(mission, faults, j, wrong_m)
             if missing <= 0:
                 break
@@ -81,7 +81,7 @@ def _count(mission: Mission, faults: list[Fault], j: int, wrong_m: float) -> int
 
 def _free(faults: list[Fault], sensor: str, start: float, length: float) -> bool:
     """Whether nothing else is wrong with that leader from a while before until a while after."""
-    return all(f.sensor != sensor or start > f.end_s + 15 or start + length < f.start_s - 15 for f in faults)
+    return all(f.sensor != sensor or start > f.end_s + 10 or start + length < f.start_s - 10 for f in faults)
 
 
 def _freeze(
