@@ -92,8 +92,7 @@ def test_its_gradient_is_that_of_differences(kind: str) -> None:
             assert abs(float(getattr(slope.premises, name)[p]) - want) < 1e-5, (name, p)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("log", [True, False])
+@pytest.mark.parametrize(("kind", "log"), [("bell", False), ("bell", True), ("gaussian", False), ("triangle", True)])
 def test_nothing_makes_it_other_than_a_number(kind: str, log: bool) -> None:
     """At a center, at nought, at the largest number there is, and with rules that hardly fire anywhere."""
     anfis = model(kind, log=log, reach=1e6)
@@ -110,8 +109,9 @@ def test_where_no_triangle_reaches_the_nearest_rule_speaks() -> None:
     premises = Premises(jnp.asarray([0.0, 1.0]), jnp.asarray([0.1, 0.1]), jnp.ones(2), (0, 0), ((0,), (1,)), "triangle")
     unit = UnitRange(jnp.zeros(1), jnp.ones(1), jnp.asarray(99.0))
     anfis = Anfis(unit, premises, jnp.asarray([[0.0, 3.0], [0.0, 7.0]]))
-    assert float(anfis(jnp.asarray([60.0]))) == pytest.approx(7.0, abs=1e-3)
-    assert 3.0 < float(anfis(jnp.asarray([0.45]))) < 5.0 < float(anfis(jnp.asarray([0.55]))) < 7.0
+    far, left, right = all_of(anfis, jnp.asarray([[60.0], [0.45], [0.55]]))
+    assert float(far) == pytest.approx(7.0, abs=1e-3)
+    assert 3.0 < float(left) < 5.0 < float(right) < 7.0
 
 
 def test_a_range_ends_where_nothing_was_learned() -> None:

@@ -1,7 +1,5 @@
 """The statistics that learn from labelled innovations, in a monitor: each channel by its own model, and stored."""
 
-from pathlib import Path
-
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -20,7 +18,7 @@ from sensorfault.run import samples
 from sensorfault.store import _decode, _encode
 from sensorfault.training.fuzzy import Setting, fit_anfis
 from sensorfault.training.logistic import fit_logistic
-from sensorfault.types import FAULT, OK, Sample
+from sensorfault.types import FAULT, OK, Residual, Sample
 
 CHANNELS, COLUMNS = 3, (0, 2)
 
@@ -67,8 +65,16 @@ def test_each_channel_is_judged_by_its_own_model(name: str, limit: float) -> Non
         assert 0 < (want > limit).sum() < len(e)
 
 
+def test_what_is_not_valid_is_no_number_to_fear() -> None:
+    value, one = jnp.asarray([jnp.nan, 1.0, jnp.inf]), jnp.ones(CHANNELS)
+    residual = Residual(jnp.zeros(()), value, jnp.eye(CHANNELS), value, value, one, jnp.isfinite(value), one > 1)
+    score, _ = statistic("logistic").evaluate((), residual)
+    assert np.isfinite(score.value).all()
+    assert not score.valid.any()
+
+
 @pytest.mark.parametrize("name", ["fuzzy", "logistic"])
-def test_it_is_stored_to_the_bit(name: str, tmp_path: Path) -> None:
+def test_it_is_stored_to_the_bit(name: str) -> None:
     part = statistic(name)
     tensors: dict[str, np.ndarray] = {}
     again = _decode(_encode(part, "statistic", tensors), tensors)

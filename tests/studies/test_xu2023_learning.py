@@ -30,11 +30,11 @@ def fitted() -> Fitted:
 
 
 def test_what_is_counted() -> None:
-    size, over = np.array([1.0, 2.0, 8.0, 12.0, 20.0]), np.array([-1.0, 1.0, -2.0, -0.5, 3.0])
+    size, over = np.array([1.0, 2.0, 8.0, 12.0, 20.0]), np.array([0.5, 1.0, -2.0, -0.5, 3.0])
     told = judged(WRONG_M, over, size)
-    assert told == pytest.approx({"accuracy": 3 / 5, "recall": 1 / 2, "fpr": 1 / 3, "auc": 5 / 6})
+    assert told == pytest.approx({"accuracy": 2 / 5, "recall": 1 / 2, "fpr": 2 / 3, "auc": 4 / 6})
     none = judged(WRONG_M, over, size / 10)
-    assert none["accuracy"] == 3 / 5
+    assert none["accuracy"] == 2 / 5
     assert np.isnan([none["recall"], none["auc"]]).all()
 
 

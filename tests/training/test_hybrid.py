@@ -9,8 +9,9 @@ from sensorfault.numerics.fuzzy import Premises
 from sensorfault.training.consequents import Lesson, Numbers, solve
 from sensorfault.training.fuzzy import Fitted, Setting, fit_anfis
 from sensorfault.training.hybrid import StepRule, hybrid, slope
-from sensorfault.training.labelled import Labelled
+from sensorfault.training.labelled import Labelled, unit_range
 from sensorfault.training.partition import grid, scatter, subtractive
+from sensorfault.training.population import population
 
 KINDS = ("bell", "gaussian", "triangle")
 
@@ -150,6 +151,14 @@ def test_a_population_finds_no_worse() -> None:
     np.testing.assert_allclose(error, judged.validated[-1], rtol=1e-9)
 
 
+def test_a_population_begins_where_the_rules_are() -> None:
+    """What the rules say perfectly as they begin is not lost to individuals by chance."""
+    premises = grid(3, 2)
+    begin = lesson(premises, ridge=1e-13)
+    exact = begin._replace(y=begin.y + solve(Numbers.of(premises), begin).left)
+    assert population(Numbers.of(premises), exact, None, 1, 0).learned[-1] < 1e-6
+
+
 def test_a_grid_has_every_combination_and_crosses_at_a_half() -> None:
     for kind in KINDS:
         premises = grid(2, 3, kind)
@@ -162,27 +171,41 @@ def test_a_grid_has_every_combination_and_crosses_at_a_half() -> None:
 def test_scattered_rules_stand_on_rows() -> None:
     x = np.random.default_rng(0).uniform(0, 1, (30, 3))
     for seed in (0, 1):
-        centers = scatter(x, 6, seed).center.reshape(6, 3)
-        assert len({tuple(c) for c in centers}) == 6
+        centers = scatter(x, 25, seed).center.reshape(25, 3)
+        assert len({tuple(c) for c in centers}) == 25
         assert {tuple(c) for c in centers} <= {tuple(row) for row in x}
     assert len(scatter(x[:4], 6).rules) == 4
 
 
-def test_subtractive_clusters_are_chius() -> None:
-    """Two heaps and a stray: Chiu's potentials in loops choose the same rows in the same order."""
-    rng = np.random.default_rng(5)
-    x = np.vstack([rng.normal(0.2, 0.03, (20, 2)), rng.normal(0.8, 0.03, (12, 2)), [[0.2, 0.9]]])
-    y = np.r_[np.zeros(20), np.ones(12), 0.0]
-    radius, joint = 0.4, np.column_stack([x, y])
-    p = np.array([sum(np.exp(-4 * ((a - b) ** 2).sum() / radius**2) for b in joint) for a in joint])
-    want = []
-    while len(want) < 2:
+def chius(joint: np.ndarray, radius: float) -> list[int]:
+    """Chiu 1994, row by row: rb = 1.5 ra, accepted above 0.5 of the first potential, rejected below 0.15."""
+
+    def near(k: int, reach: float) -> np.ndarray:
+        return np.array([np.exp(-4 * ((row - joint[k]) ** 2).sum() / reach**2) for row in joint])
+
+    p = sum(near(k, radius) for k in range(len(joint)))
+    first, found = max(p), []
+    while (best := max(p)) > 0.15 * first:
         k = int(np.argmax(p))
-        want.append(k)
-        p = p - p[k] * np.array([np.exp(-4 * ((a - joint[k]) ** 2).sum() / (1.5 * radius) ** 2) for a in joint])
-    told = subtractive(x, y, radius)
-    np.testing.assert_array_equal(told.center.reshape(-1, 2), x[want])
-    assert subtractive(x, np.zeros(33), 3.0).rules == ((0, 1),)
+        apart = min((np.sqrt(((joint[k] - joint[f]) ** 2).sum()) for f in found), default=np.inf)
+        if best <= 0.5 * first and apart / radius + best / first < 1:
+            p[k] = 0
+            continue
+        found.append(k)
+        p = p - best * near(k, 1.5 * radius)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_subtractive_clusters_are_chius(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    x = np.vstack([rng.uniform(0, 1, (25, 2)), rng.normal(0.2, 0.05, (20, 2)), rng.normal(0.8, 0.1, (15, 2))])
+    y = 5 * x[:, 0] + rng.uniform(-1, 1, 60)
+    joint = np.column_stack([x, (y - y.min()) / np.ptp(y)])
+    for radius in (0.15, 0.35):
+        want = chius(joint, radius)
+        np.testing.assert_array_equal(subtractive(x, y, radius).center.reshape(-1, 2), x[want])
+    assert subtractive(x, np.zeros(60), 3.0).rules == ((0, 1),)
 
 
 def test_a_feature_that_never_moves_does_no_harm() -> None:
@@ -192,6 +215,13 @@ def test_a_feature_that_never_moves_does_no_harm() -> None:
         told = fit_anfis(features, target, setting)
         assert np.isfinite(predicted(told, features * 3)).all()
         assert told.rmse < target.std()
+
+
+def test_an_innovation_of_nought_does_not_stretch_the_range_of_logarithms() -> None:
+    features = np.array([[0.0], [4.0], [4.0], [4.0], [40.0]])
+    unit = unit_range(features, log=True)
+    np.testing.assert_allclose(unit.low, np.log(0.04))
+    np.testing.assert_allclose(unit(features)[:, 0], np.log([1, 100, 100, 100, 1000]) / np.log(1000))
 
 
 def test_five_rows_or_one_that_is_not_finite_are_refused() -> None:
