@@ -15,10 +15,15 @@ from laws.case import Case, limits_learned
 from laws.guests.zoo import zoo
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods import (
+    anfis_cubature,
     ar_predictor,
     bp_autoencoder,
+    chi_square_cubature,
+    cooperative,
     cusum,
+    double_threshold,
     kinematic_observer,
+    logistic_cubature,
     lstm_displacement,
     lstm_predictor,
     mean_pair,
@@ -38,9 +43,11 @@ from sensorfault.monitor.residual.conditioning import Conditioning
 from sensorfault.monitor.residual.reconstruction import Reconstruction
 from sensorfault.monitor.statistic.exchange import Exchange
 from sensorfault.run import samples
+from sensorfault.simulation.acoustic import Ranging
 from sensorfault.simulation.arm import PERIOD_S, run
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.simulation.road import drive
+from sensorfault.simulation.underwater import sail
 from sensorfault.training.gradient import Plan
 from sensorfault.training.multistep import Schedule
 from sensorfault.training.online import Learning
@@ -252,6 +259,24 @@ def drifting(name: str) -> Case:
     return Case(name, monitor, rows, lie=np.array([500.0, 0.0]), back_s=60.0, named=(0,), lost={1: (0,)})
 
 
+def follower(name: str) -> Case:
+    """A follower and two leaders, all of it at every tick; a range needs both depths, and where its leader is."""
+    log = sail(700.0, seed=2, ranging=Ranging(period_s=1.0, lost=0.0, alternating=False), surface_s=np.inf).log
+    monitor = METHODS[name].build(log.between(end_s=400.0), 0, Session()).monitor
+    part = log.between(399.0)
+    ranges = tuple(i for i, channel in enumerate(log.channels) if channel.name == "range")
+    own = {at + k: (at,) for at in ranges for k in (1, 2, 3)}
+    return Case(
+        name,
+        monitor,
+        samples(part.time, part.value, part.fresh),
+        lie=np.where(np.isin(np.arange(len(log.channels)), ranges), 80.0, 0.0),
+        back_s=30.0,
+        named=ranges,
+        lost={log.index("pressure.depth"): ranges, **own},
+    )
+
+
 def _permuted(monitor: Monitor, order: np.ndarray) -> Monitor:
     """The monitor of a joint test and one of repeats, for its channels in another order."""
     residual = (_conditioning if isinstance(monitor.residual, Conditioning) else _reconstruction)(
@@ -294,6 +319,16 @@ ZOO = {case.name: case for case in zoo()}
 MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
 DRIFTING = {name: functools.partial(drifting, name) for name in DRIFTS}
 HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS} | {"height-agreement": heights}
+FOLLOWERS = {
+    recipe.name: functools.partial(follower, recipe.name)
+    for recipe in (
+        *chi_square_cubature.RECIPES,
+        *anfis_cubature.RECIPES,
+        double_threshold.RECIPE,
+        logistic_cubature.RECIPE,
+        cooperative.RECIPE,
+    )
+}
 ALONE = {
     "motion-deficit": deficit,
     "car": whole_car,
@@ -303,6 +338,7 @@ ALONE = {
     **MOTION,
     **HEIGHT,
     **DRIFTING,
+    **FOLLOWERS,
 }
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)

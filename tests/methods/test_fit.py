@@ -44,7 +44,10 @@ def test_the_catalog() -> None:
     of_motion = {"motion-deficit", "bicycle-kalman", "side-force", "car"}
     slow = {"cusum", "ramp-glr", "slope", "mean-pair"}
     of_height = {"multistep-observer", "kinematic-observer", "height-agreement", "drone", *slow}
-    others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion, *of_height}
+    gates = {f"chi-square-{filter}-{far}" for filter in ("ckf", "ackf") for far in ("05", "01")}
+    learned = {"double-threshold", "anfis-cubature", "anfis-cubature-9m", "logistic-cubature"}
+    of_ranges = {"cooperative", *gates, *learned}
+    others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion, *of_height, *of_ranges}
     assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, *others}
     assert DEFAULT == "relative-conditioning"
     for name, recipe in METHODS.items():

@@ -21,6 +21,7 @@ from sensorfault.training.logistic import fit_logistic
 from sensorfault.types import FAULT, OK, Residual, Sample
 
 CHANNELS, COLUMNS = 3, (0, 2)
+ANY = jnp.full(2, jnp.inf)  # variance of an innovation
 
 
 def learned(seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -33,8 +34,10 @@ def statistic(name: str) -> FuzzyInference | LogisticRegression:
     if name == "fuzzy":
         settings = (Setting(epochs=5), Setting(partition="scatter", rules=3, log=True, epochs=5))
         models = (fit_anfis(*learned(s), setting).model for s, setting in enumerate(settings))
-        return FuzzyInference(tuple(models), COLUMNS)
-    return LogisticRegression(tuple(fit_logistic(learned(s)[0], learned(s)[1] > 2) for s in range(2)), COLUMNS)
+        return FuzzyInference(tuple(models), ANY, COLUMNS)
+    return LogisticRegression(
+        tuple(fit_logistic(learned(s)[0], learned(s)[1] > 2) for s in range(2)), jnp.full(2, jnp.inf), COLUMNS
+    )
 
 
 def rows() -> Sample:

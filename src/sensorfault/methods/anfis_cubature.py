@@ -6,6 +6,7 @@ import numpy as np
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.ranged import (
+    GROWTH,
     WRONG,
     Filter,
     cubature,
@@ -16,6 +17,7 @@ from sensorfault.methods.ranged import (
     model,
     monitor,
     on_ranges,
+    widest,
 )
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
@@ -41,7 +43,8 @@ def anfis(
     """With rules learned from these ranges, one set a leader. T2 is 3 RMSE of the training, else that of an anomaly."""
     fits = [fit_anfis(*of_leader, setting) for of_leader in labelled]
     limits = np.array([3 * fit.rmse for fit in fits]) if rmse else np.full(len(fits), WRONG * filter.sigma_m)
-    test = FuzzyInference(tuple(fit.model for fit in fits), tuple(leader.range for leader in found.leaders))
+    columns = tuple(leader.range for leader in found.leaders)
+    test = FuzzyInference(tuple(fit.model for fit in fits), widest(labelled), columns)
     heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, limits)))
     told = {"rmse_m": [fit.rmse for fit in fits], "limits_m": limits.tolist()}
     return model(name, log, found, heard, ("foretold error",), filter, told)
@@ -53,7 +56,7 @@ def _recipe(rmse: bool) -> Recipe:
     def build(log: Log, seed: int, session: Session) -> Model:
         found = followed(name, log)
         session.tell("fitting the noise of ranges and dead reckoning")
-        own = fitted(log, found, Filter())
+        own = fitted(log, found, Filter(growth=GROWTH))
         session.tell("learning rules")
         return anfis(name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)), rmse)
 

@@ -3,7 +3,7 @@
 from statistics import NormalDist
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.ranged import Filter, cubature, fitted, followed, model, monitor, on_ranges
+from sensorfault.methods.ranged import GROWTH, Filter, cubature, fitted, followed, model, monitor, on_ranges
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
@@ -23,7 +23,7 @@ def chi_square(name: str, log: Log, far: float, filter: Filter | None = None, ad
         LogError: not a follower's log.
     """
     found = followed(name, log)
-    own = filter or fitted(log, found, Filter(adaptive=adaptive))
+    own = filter or fitted(log, found, Filter(adaptive=adaptive, growth=GROWTH))
     branch = Branch(Normalised(), on_ranges(log, found, limit(far)))
     heard = monitor(log, cubature(log, found, own), branch)
     return model(name, log, found, heard, ("chi-square",), own, {"false_alarms": far})

@@ -4,7 +4,7 @@ import numpy as np
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.chi_square_cubature import limit
-from sensorfault.methods.ranged import Filter, cubature, fitted, followed, model, monitor, on_ranges
+from sensorfault.methods.ranged import GROWTH, Filter, cubature, fitted, followed, model, monitor, on_ranges
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
@@ -16,7 +16,7 @@ from sensorfault.training.tapes import score_tape
 
 FALSE_ALARMS = 0.01  # of the healthy ranges
 LEAST_RUN = 5.0  # repeats that are no jam yet
-GROWTH, REPEATED = 0.5, 1e4
+REPEATED = 1e6
 
 
 def cooperative(name: str, log: Log, filter: Filter | None = None) -> Model:

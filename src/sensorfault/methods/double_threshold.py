@@ -7,7 +7,18 @@ import numpy as np
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.chi_square_cubature import limit
-from sensorfault.methods.ranged import WRONG, Filter, cubature, fitted, followed, lessons, model, monitor, on_ranges
+from sensorfault.methods.ranged import (
+    GROWTH,
+    WRONG,
+    Filter,
+    cubature,
+    fitted,
+    followed,
+    lessons,
+    model,
+    monitor,
+    on_ranges,
+)
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
@@ -68,7 +79,7 @@ def _windows(runs: Sequence[Run], wrong_m: float) -> Windows:
 def _build(log: Log, seed: int, session: Session) -> Model:
     found = followed(RECIPE.name, log)
     session.tell("fitting the noise of ranges and dead reckoning")
-    own = fitted(log, found, Filter(adaptive=False))
+    own = fitted(log, found, Filter(adaptive=False, growth=GROWTH))
     session.tell("training the network")
     return double_threshold(RECIPE.name, log, found, own, lessons(log, found, own, seed), seed)
 

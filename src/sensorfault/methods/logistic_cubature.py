@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.ranged import (
+    GROWTH,
     WRONG,
     Filter,
     cubature,
@@ -14,6 +15,7 @@ from sensorfault.methods.ranged import (
     model,
     monitor,
     on_ranges,
+    widest,
 )
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
@@ -29,7 +31,7 @@ def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, labelled
     """With odds learned from these ranges, one regression a leader."""
     wrong_m = WRONG * filter.sigma_m
     models = tuple(fit_logistic(features, size > wrong_m) for features, size in labelled)
-    test = LogisticRegression(models, tuple(leader.range for leader in found.leaders))
+    test = LogisticRegression(models, widest(labelled), tuple(leader.range for leader in found.leaders))
     heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, 0.0)))
     return model(name, log, found, heard, ("log odds",), filter, {"wrong_m": wrong_m})
 
@@ -37,7 +39,7 @@ def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, labelled
 def _build(log: Log, seed: int, session: Session) -> Model:
     found = followed(RECIPE.name, log)
     session.tell("fitting the noise of ranges and dead reckoning")
-    own = fitted(log, found, Filter())
+    own = fitted(log, found, Filter(growth=GROWTH))
     session.tell("learning odds")
     return logistic(RECIPE.name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)))
 

@@ -25,6 +25,8 @@ from sensorfault.vehicles.underwater import Follower, FollowerRoles, roles
 
 START_M = 2.0  # standard deviation of the first fix, north and east [m]
 LEAST = 40  # ranges of each leader
+GROWTH = 0.5  # of the recipes; none as printed
+WIDER = 5.0  # times the usual variance of an innovation: beyond it nothing was learned
 COPIES = 4  # of the log, each with other faults, to learn from
 WRONG = 3.0  # a range further off than so many of its standard deviations is anomalous: 9 m of 3 m
 
@@ -34,8 +36,8 @@ class Filter:
     """What the filter takes for granted.
 
     `q`: variance that a second of dead reckoning adds [m²/s], 1 as printed. `sigma_m`: standard deviation of a range
-    [m]. `adaptive`: R* for R. `growth`: share of q that each refused range adds. `repeated`: how many times R is that
-    of an exact repeat.
+    [m]. `adaptive`: R* for R. `growth`: share by which each refused range makes q larger. `repeated`: how many times R
+    is that of an exact repeat.
     """
 
     q: float = 1.0
@@ -128,6 +130,12 @@ def learned(log: Log, found: FollowerRoles, filter: Filter, of: Sequence[Lesson]
     """Features and errors of each leader's ranges."""
     residual = cubature(log, found, filter)
     return labelled(monitor(log, residual), of, residual.vehicle)
+
+
+def widest(of: Sequence[Labelled]) -> Float[Array, " L"]:
+    """Up to which variance of a leader's innovations something was learned of them, and a bit more [m²]."""
+    # S = r² / M²
+    return jnp.asarray([WIDER * float(np.median(one.features[:, 0] ** 2 / one.features[:, 1])) for one in of])
 
 
 def model(

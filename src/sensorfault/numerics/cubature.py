@@ -75,6 +75,19 @@ def observe(
     return Seen(expected, (at - mean[None]).T / jnp.sqrt(jnp.asarray(len(at), float)), dz)
 
 
+def bent(seen: Seen, at_mean: Float[Array, " M"]) -> Float[Array, " M"]:
+    """Variance of each measurement by the curvature of h, which the points do not show; `at_mean` is h(mean).
+
+    Small beside R unless the spread is a good part of the way over which h bends: a filter that has been lost for long
+    would else believe its first fixes too much. The second-order term of a Gaussian filter (Jazwinski 1970, 9.3).
+    """
+    n = len(seen.dx)
+    # c_i = (z_i⁺ + z_i⁻) / 2 - h(x) = n h'' σ² / 2,  Var = Σ (h'' σ²)² / 2 = Σ 2 (c_i / n)²
+    both = jnp.sqrt(jnp.asarray(2.0 * n)) * (seen.dz[:, :n] + seen.dz[:, n:]) / 2
+    c = both + (seen.expected - at_mean)[:, None]
+    return 2 * ((c / n) ** 2).sum(axis=1)
+
+
 def correct(
     mean: Float[Array, " n"],
     seen: Seen,

@@ -12,6 +12,7 @@ from sensorfault.numerics.local import east_north, on_the_map
 from sensorfault.types import Sample
 
 UNKNOWN_SPEED = 2.0  # standard deviation of a velocity that nothing measures [m/s]
+GAP_S = 5.0  # over a longer gap of the clock nobody knows how it went
 LOST_M = 2000.0  # with a position no better than this, ranges do not bring it back
 _POSITIONS = (("latitude", "longitude", "rad"), ("north", "east", "m"), ("y", "x", "m"))
 
@@ -113,9 +114,14 @@ class Follower(eqx.Module):
         way = jnp.stack([v * c - w * s, v * s + w * c]) * dt
         return state + jnp.where(self._reckoned(sample), way, 0.0) / self._metres(state)
 
-    def noise(self, state: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]) -> Float[Array, "2"]:
-        told = jnp.sqrt(self.q * dt)
-        return jnp.where(self._reckoned(sample), told, UNKNOWN_SPEED * dt + told) / self._metres(state)
+    def noise(
+        self, state: Float[Array, "2"], spread: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]
+    ) -> Float[Array, "2"]:
+        known = self._reckoned(sample) & (dt <= GAP_S)
+        # a speed that nobody knows is the same from tick to tick: (σ + u Δt)² - σ²
+        way = UNKNOWN_SPEED * dt
+        unknown = way * (way + 2 * spread * self._metres(state))
+        return jnp.sqrt(self.q * dt + jnp.where(known, 0.0, unknown)) / self._metres(state)
 
     def expected(self, state: Float[Array, "2"], sample: Sample) -> Float[Array, " M"]:
         ranges = []

@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float
 
 from sensorfault.monitor.residual.measurement_noise import SageHusa, Stated, WindowedNoise
 from sensorfault.numerics.columns import picked
-from sensorfault.numerics.cubature import Seen, correct, observe, predict
+from sensorfault.numerics.cubature import Seen, bent, correct, observe, predict
 from sensorfault.types import NEVER, Residual, Sample, Trust
 
 MANY = 20.0  # rejections in a row beyond which the process noise grows no more
@@ -30,8 +30,10 @@ class Motion(Protocol):
         """f: the state at this sample from the one `dt` [s] before."""
         ...
 
-    def noise(self, state: Float[Array, " n"], sample: Sample, dt: Float[Array, ""]) -> Float[Array, " n"]:
-        """Standard deviations of what f adds in `dt` [s]."""
+    def noise(
+        self, state: Float[Array, " n"], spread: Float[Array, " n"], sample: Sample, dt: Float[Array, ""]
+    ) -> Float[Array, " n"]:
+        """Standard deviations of what f adds in `dt` [s] to a state of this `spread`."""
         ...
 
     def expected(self, state: Float[Array, " n"], sample: Sample) -> Float[Array, " M"]:
@@ -52,7 +54,7 @@ class _Belief(NamedTuple):
     root: Float[Array, "n n"]  # S with S Sᵀ = P
     time: Float[Array, ""]  # [s]
     rejected: Float[Array, ""]  # measurements refused since one was last taken in
-    last: Float[Array, " M"]  # measurements as they last came; NEVER where none did
+    last: Float[Array, " M"]  # measurements as they were last taken in; NEVER where none was
     learned: Any  # of the measurements' noise
     alive: Bool[Array, ""]
 
@@ -65,16 +67,17 @@ class _Work(NamedTuple):
     predicted: Float[Array, " M"]  # variance of the innovation without R
     used: Float[Array, " M"]  # R*
     there: Bool[Array, " M"]
+    again: Bool[Array, " M"]  # exact repeats
 
 
 class Cubature(eqx.Module):
     """The residual is the innovation of each observed channel, with P_zz of the stated R; `noise` is the R* in use.
 
     `vehicle` is a Motion. `r`: stated variances of the measurements. `noise`: how R is adapted. `growth`: each
-    measurement refused in a row adds this share to the variance of the process (up to 20 of them), so that a filter
-    that refuses all soon doubts itself instead of them. `repeated`: an exact repeat's R is so many times as large: a
-    sensor that says the same to the last bit has likely not measured. The filter begins where the vehicle can tell its
-    state.
+    measurement refused in a row makes the variance of the process larger by this share (up to 20 of them), so that a
+    filter that refuses all soon doubts itself instead of them. `repeated`: an exact repeat's R is so many times as
+    large: a sensor that says the same to the last bit has likely not measured. The filter begins where the vehicle can
+    tell its state. What h bends within the filter's spread counts as noise.
     Xu et al. 2023, (6)-(20), (30) and (31); what trust leaves out has gain 0, (33)-(35).
     """
 
@@ -99,11 +102,13 @@ class Cubature(eqx.Module):
         there = picked(sample.fresh, motion.observed) & motion.ready(sample) & prior.alive
         said = picked(sample.value, motion.observed)
         innovation = jnp.where(there, said - seen.expected, 0.0)
-        predicted = (seen.dz**2).sum(axis=1)
+        curved = bent(seen, motion.expected(prior.mean, sample))
+        predicted = (seen.dz**2).sum(axis=1) + curved
         used = self.noise.noise(prior.learned, self.r, innovation, predicted)
-        used = used * jnp.where(there & (said == prior.last), self.repeated, 1.0)
+        again = there & (said == prior.last)
+        used = used * jnp.where(again, self.repeated, 1.0) + curved
         # P_zz
-        s = (seen.dz[:, None, :] * seen.dz[None]).sum(axis=2) + jnp.diag(self.r)
+        s = (seen.dz[:, None, :] * seen.dz[None]).sum(axis=2) + jnp.diag(self.r + curved)
         to = (jnp.arange(self.channels)[:, None] == jnp.asarray(motion.observed)[None]).astype(float)
         rest = 1.0 - to.sum(axis=1)
         mine = to @ (motion.ready(sample) & prior.alive).astype(float) > 0
@@ -117,14 +122,14 @@ class Cubature(eqx.Module):
             valid=to @ there.astype(float) > 0,
             born=sample.born,
         )
-        return residual, _Work(prior, sample, seen, innovation, predicted, used, there)
+        return residual, _Work(prior, sample, seen, innovation, predicted, used, there, again)
 
     def update(self, pending: _Work, trust: Trust) -> _Belief:
-        prior, sample, seen, innovation, predicted, used, there = pending
+        prior, sample, seen, innovation, predicted, used, there, again = pending
         motion: Motion = self.vehicle
         taken = there & picked(trust.measured, motion.observed)
         mean, root = correct(prior.mean, seen, innovation, used, taken)
-        refused = (there & ~taken).sum().astype(float)
+        refused = (there & ~taken & ~(again & (self.repeated > 1))).sum().astype(float)
         first, spread, begins = motion.start(sample)
         begins = begins & ~prior.alive
         return _Belief(
@@ -132,7 +137,7 @@ class Cubature(eqx.Module):
             root=jnp.where(begins, jnp.diag(spread), root),
             time=sample.time,
             rejected=jnp.where(taken.any() | begins, 0.0, jnp.minimum(prior.rejected + refused, MANY)),
-            last=jnp.where(picked(sample.fresh, motion.observed), picked(sample.value, motion.observed), prior.last),
+            last=jnp.where(taken, picked(sample.value, motion.observed), prior.last),
             learned=self.noise.learn(prior.learned, innovation, predicted, taken),
             alive=prior.alive | begins,
         )
@@ -140,7 +145,8 @@ class Cubature(eqx.Module):
     def _predict(self, belief: _Belief, sample: Sample) -> _Belief:
         motion: Motion = self.vehicle
         dt = jnp.where(belief.alive, jnp.maximum(sample.time - belief.time, 0.0), 0.0)
-        q_root = jnp.diag(motion.noise(belief.mean, sample, dt) * jnp.sqrt(1 + self.growth * belief.rejected))
+        before = jnp.sqrt((belief.root**2).sum(axis=1))
+        q_root = jnp.diag(motion.noise(belief.mean, before, sample, dt) * (1 + self.growth) ** (belief.rejected / 2))
         mean, root = predict(lambda state: motion.ahead(state, sample, dt), belief.mean, belief.root, q_root)
         spread = jnp.sqrt((root**2).sum(axis=1))
         return belief._replace(mean=mean, root=root, alive=belief.alive & ~motion.lost(mean, spread))

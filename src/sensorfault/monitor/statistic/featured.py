@@ -12,11 +12,21 @@ from sensorfault.types import Residual, Score
 Rating = Callable[[Float[Array, "3"]], Float[Array, ""]]
 
 
-def featured(models: Sequence[Rating], columns: tuple[int, ...], residual: Residual) -> Score:
-    """One test a channel; those without a model are never valid."""
+def featured(
+    models: Sequence[Rating], columns: tuple[int, ...], widest: Float[Array, " L"], residual: Residual
+) -> Score:
+    """One test a channel; those without a model are never valid.
+
+    Nor is one whose innovation has a larger variance than `widest`: such a filter was not learned from, and one that
+    has lost its way would take its own error for the measurement's, for ever.
+    """
     own = jnp.eye(residual.value.size)
     value = jnp.where(residual.valid, residual.value, 0.0)
-    seen = features(value, (own * residual.cov).sum(axis=1), residual.noise)
-    rated = dict(zip(columns, models, strict=True))
-    told = jnp.stack([rated[c](seen[c]) if c in rated else jnp.zeros(()) for c in range(value.size)])
-    return each(told, residual.valid & jnp.asarray([c in rated for c in range(value.size)]))
+    variance = (own * residual.cov).sum(axis=1)
+    seen = features(value, variance, residual.noise)
+    told, valid = jnp.zeros_like(value), jnp.zeros_like(residual.valid)
+    for model, column, most in zip(models, columns, widest, strict=True):
+        mine = own[column] > 0
+        told = jnp.where(mine, model(seen[column]), told)
+        valid = valid | (mine & (variance[column] <= most))
+    return each(told, residual.valid & valid)

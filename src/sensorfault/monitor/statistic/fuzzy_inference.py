@@ -1,6 +1,7 @@
 """The error of a measurement, foretold by fuzzy rules from what its innovation looks like: one test a channel."""
 
 import equinox as eqx
+from jaxtyping import Array, Float
 
 from sensorfault.monitor.statistic.featured import featured
 from sensorfault.numerics.fuzzy import Anfis
@@ -10,18 +11,19 @@ from sensorfault.types import Residual, Score, Trust
 class FuzzyInference(eqx.Module):
     """ANFIS-j of |r|, M² and R* for each measurement j [m]. Xu et al. 2023, section 3; the limit is its T2, (32).
 
-    M² is with the covariance of the residual, R* its noise. `columns[j]`: the channel that model j judges; the
-    tests of the others are never valid.
+    M² is with the covariance of the residual, R* its noise. `columns[j]`: the channel that model j judges, as long as
+    its innovation's variance is no more than `widest[j]` [m²]; the tests of the others are never valid.
     """
 
     models: tuple[Anfis, ...]
+    widest: Float[Array, " L"]
     columns: tuple[int, ...] = eqx.field(static=True)
 
     def init(self) -> tuple[()]:
         return ()
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
-        return featured(self.models, self.columns, residual), ()
+        return featured(self.models, self.columns, self.widest, residual), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
         return ()

@@ -9,10 +9,10 @@ import numpy as np
 
 from sensorfault.methods.anfis_cubature import anfis
 from sensorfault.methods.chi_square_cubature import chi_square
-from sensorfault.methods.cooperative import GROWTH, REPEATED, cooperative
+from sensorfault.methods.cooperative import REPEATED, cooperative
 from sensorfault.methods.double_threshold import double_threshold
 from sensorfault.methods.logistic_cubature import logistic
-from sensorfault.methods.ranged import Filter, cubature, followed, learned, monitor, on_ranges
+from sensorfault.methods.ranged import GROWTH, Filter, cubature, followed, learned, monitor, on_ranges
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.studies.xu2023.scenario import TRAINED_S, Scenario
