@@ -3,8 +3,8 @@
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +31,22 @@ def progress() -> Iterator["Progress"]:
     columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     with Progress(*columns, console=Console(stderr=True), transient=False) as bar:
         yield bar
+
+
+@contextmanager
+def reading(name: str) -> Iterator[Callable[[float], None]]:
+    """What hears the share of a file that has been read; the display appears when the first share is told."""
+    with ExitStack() as later:
+        shown: list[Callable[[float], None]] = []
+
+        def tell(share: float) -> None:
+            if not shown:
+                bar = later.enter_context(progress())
+                task = bar.add_task(f"reading {name}", total=1.0)
+                shown.append(lambda share: bar.update(task, completed=share))
+            shown[0](share)
+
+        yield tell
 
 
 def table(

@@ -1,19 +1,19 @@
 """Describe an unknown log: which columns are which sensor, in what unit, held or new. Every guess gives its reason."""
 
 import math
-import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import FileEntry, SensorEntry
 from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY, measurements
+from sensorfault.logs.guess.naming import joined, short_names, stem_of
 from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.place import Where, files_of
 from sensorfault.logs.readers.formats import read_tables
-from sensorfault.logs.readers.npy import name_of
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -32,23 +32,28 @@ class _Guess:
     @property
     def stem(self) -> str:
         """What it is called: its table, or its file where that holds one."""
-        return self.file.table or _stem(self.path)
+        return self.file.table or stem_of(self.path)
 
 
-def guess(path: Where) -> VehicleFile:
+def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> VehicleFile:
     """Describe a log from its names and values.
+
+    Args:
+        path: a file, a folder, or several files of one drive.
+        tell: hears how much of a large file has been read, 0 to 1.
 
     Raises:
         LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
     """
-    files, guesses, errors = files_of(path), [], []
+    files, guesses, errors, said = files_of(path), [], [], []
     for file in files:
         try:
-            tables = read_tables(file)
+            tables = read_tables(file, Ask(tell=tell))
         except LogError as error:
             errors.append(error)
             continue
         for name, source in tables.items():
+            said += [*(one.sentence(file) for one in source.damage), *source.notes]
             try:
                 guesses.append(_guess_table(source, name if len(tables) > 1 else None))
             except LogError as error:
@@ -59,19 +64,21 @@ def guess(path: Where) -> VehicleFile:
             if len(errors) == 1
             else LogError(f"{path}: none of its {len(errors)} files or tables is a log; the first: {errors[0]}")
         )
-    notes = [f"Left out: {error}" for error in errors]
+    notes = [*dict.fromkeys(said), *(f"Left out: {error}" for error in errors)]
     _refuse_several_drives(guesses)
     guesses, raw = _calibrated(guesses)
     guesses.sort(key=_octave)
-    names = ["log"] if len(guesses) == 1 else _short_names(guesses)
+    names = (
+        ["log"] if len(guesses) == 1 else short_names([(one.stem, one.path.name, one.file.table) for one in guesses])
+    )
     taken = [sensor.name for one in guesses for sensor in one.sensors]
     sensors = [
-        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else _joined(name, sensor.name))
+        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else joined(name, sensor.name))
         for one, name in zip(guesses, names, strict=True)
         for sensor in one.sensors
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
-    name = _stem(files[0]) if len(files) == 1 else files[0].parent.stem
+    name = stem_of(files[0]) if len(files) == 1 else files[0].parent.stem
     return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
 
 
@@ -144,23 +151,3 @@ def _untied(guesses: list[_Guess]) -> list[str]:
         for one in guesses
         if tied and one not in tied
     ]
-
-
-def _joined(file: str, sensor: str) -> str:
-    return file if file.endswith(sensor) or f"_{sensor}_" in f"_{file}_" else f"{file}_{sensor}"
-
-
-def _stem(path: Path) -> str:
-    """A file's name; of arrays, what they measure."""
-    return name_of(path).split("__")[-1] if path.suffix.lower() == ".npy" else path.stem
-
-
-def _short_names(guesses: list[_Guess]) -> list[str]:
-    """Names of files and tables without what they share and without numbers, where they stay apart."""
-    stems = [one.stem for one in guesses]
-    apart = (i for i, letters in enumerate(zip(*stems, strict=False)) if len(set(letters)) > 1)
-    start = stems[0].rfind("_", 0, next(apart, 0)) + 1
-    short = [re.sub(r"\W+", "_", re.sub(r"(_\d+)+$", "", stem[start:])).strip("_").lower() for stem in stems]
-    if len(set(short)) == len(short) and all(short):
-        return short
-    return [re.sub(r"\W+", "_", f"{one.path.name}_{one.file.table or ''}").strip("_").lower() for one in guesses]

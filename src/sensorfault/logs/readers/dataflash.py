@@ -4,14 +4,13 @@ import os
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout
-from functools import lru_cache
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import polars as pl
 
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.source import Ask, Source, Tables, told
 from sensorfault.logs.table import LogError
 
 _HEAD = b"\xa3\x95"  # every message begins so
@@ -20,19 +19,13 @@ _INSTANCE = "I"
 _FULL = 0.9  # of the bytes of a whole log belong to messages
 
 
-def read_dataflash(path: Path) -> dict[str, Source]:
+def read_dataflash(path: Path, ask: Ask) -> Tables:
     """Every kind of message that has a time, on the autopilot's clock. `IMU[1]` is the second of several IMUs.
 
     Raises:
         LogError: empty, not a DataFlash log, or hardly a message in it that can be read.
     """
-    stat = path.stat()
-    return dict(_tables(path, stat.st_mtime_ns, stat.st_size))
-
-
-@lru_cache(maxsize=1)
-def _tables(path: Path, changed_ns: int, size: int) -> dict[str, Source]:
-    """`changed_ns` and `size` tell one content of the path from another: each table of a log is asked for by itself."""
+    size = path.stat().st_size
     with path.open("rb") as file:
         head = file.read(2)
     if head != _HEAD:
@@ -44,7 +37,7 @@ def _tables(path: Path, changed_ns: int, size: int) -> dict[str, Source]:
         raise LogError(f"{path}: no messages with a time in this DataFlash log; name a log of a whole flight.")
     if read < _FULL * size:
         note = f"{path.name}: only {read / size:.0%} of its bytes are messages that can be read; the rest was left out."
-        tables = {name: Source(one.path, one.frame, one.time, one.unit, 0, (note,)) for name, one in tables.items()}
+        tables = told(tables, (note,))
     return tables
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
 
 _OWN = "variables"  # the table of vectors that stand in no structure
 _NUMBERS = "biuf"  # numpy's letters for truths, whole numbers and floats
 
 
-def read_mat(path: Path) -> dict[str, Source]:
+def read_mat(path: Path, ask: Ask) -> Tables:
     """Every table in the file, by the name of its structure. Functions and objects are left alone.
 
     Raises:
