@@ -6,6 +6,7 @@ from pathlib import Path
 
 import polars as pl
 
+from sensorfault.logs.entries import SensorEntry
 from sensorfault.logs.table import LogError
 
 
@@ -42,6 +43,7 @@ class Source:
     """One file's columns, untouched: numbers where every cell is a number, text elsewhere.
 
     `time` and `unit`: the time column and its unit where the format fixes them (RTKLIB does, CSV does not).
+    `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
@@ -53,6 +55,7 @@ class Source:
     first_line: int = 0
     notes: tuple[str, ...] = ()
     damage: tuple[Damage, ...] = ()
+    sensors: tuple[SensorEntry, ...] = ()
 
     def place(self, row: int) -> str:
         """Where a row stands in the file, for a person."""
