@@ -1,7 +1,7 @@
 """Which reader opens which file. A new format is one more line in FORMATS."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
@@ -14,6 +14,7 @@ from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
+from sensorfault.logs.readers.ulog import read_ulog
 from sensorfault.logs.table import LogError
 
 _HEAD_BYTES = 4096
@@ -69,6 +70,7 @@ FORMATS = (
     Format("RTKLIB solution", ("*.pos",), _one(read_pos)),
     Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), _once(read_mat)),
+    Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
 )
 SUFFIXES = tuple(dict.fromkeys(name.removeprefix("*") for one in FORMATS for name in one.names))
@@ -131,4 +133,4 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
         tables = form.read(path, ask)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
-    return {name: with_attitude(source) for name, source in tables.items()}
+    return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}
