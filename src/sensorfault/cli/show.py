@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -33,13 +34,19 @@ def progress() -> Iterator["Progress"]:
         yield bar
 
 
+_PATIENCE_S = 0.5  # nobody needs to see how a small file is read
+
+
 @contextmanager
 def reading(name: str) -> Iterator[Callable[[float], None]]:
-    """What hears the share of a file that has been read; the display appears when the first share is told."""
+    """What hears the share of a file that has been read; the display appears where that takes its time."""
+    begun = monotonic()
     with ExitStack() as later:
         shown: list[Callable[[float], None]] = []
 
         def tell(share: float) -> None:
+            if monotonic() < begun + _PATIENCE_S:
+                return
             if not shown:
                 bar = later.enter_context(progress())
                 task = bar.add_task(f"reading {name}", total=1.0)

@@ -53,7 +53,7 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
         known = ", ".join(source.frame.columns)
         raise LogError(f"{source.path}: there is no time column '{column}'; take one of {known}.")
     zero, time = seconds(source, column, unit)
-    name, notes = source.path.name, []
+    name, notes = source.name, []
     usable = np.flatnonzero(np.isfinite(time))
     if len(usable) < len(time):
         bad = int(np.flatnonzero(~np.isfinite(time))[0])
@@ -125,7 +125,7 @@ def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -
             "are out of order; sort the file by time, keep one row for each time, or name another time column."
         )
     lost = counted(dropped, "row")
-    return rows, [f"{source.path.name}: time '{column}' {found} (first {source.place(first)}); {lost} left out."]
+    return rows, [f"{source.name}: time '{column}' {found} (first {source.place(first)}); {lost} left out."]
 
 
 def _longest_rise(time: np.ndarray) -> np.ndarray:

@@ -57,7 +57,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         start, rate = read_tag(source.path.parent / file.tag, source.path, counter, clock.rows + source.first_line)
         zero = start + rate * clock.zero_s + file.offset_s
         notes.append(
-            f"{source.path.name}: {file.tag} ties its counter to GPS time; the counter runs "
+            f"{source.name}: {file.tag} ties its counter to GPS time; the counter runs "
             f"{abs(rate - 1) * 1e6:.1f} ppm {'slow' if rate > 1 else 'fast'}, which was corrected."
         )
     time = clock.time * rate
@@ -75,12 +75,12 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         if sensor.held and sensor.epoch is not None:
             late = stale(time, fresh[:, own], period)
             value[late, own] = np.nan
-            notes += _stale_note(source.path.name, sensor.name, late, period)
+            notes += _stale_note(source.name, sensor.name, late, period)
         described.append(Sensor(sensor.name, period, sensor.held))
-        notes += _held_note(source.path.name, sensor, value[:, own], fresh[:, own], period)
+        notes += _held_note(source.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
     notes += gaps.notes()
-    return Stream(source.path.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
+    return Stream(source.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
 
 
 class _Gaps:
@@ -101,7 +101,7 @@ class _Gaps:
             if len(entries) > _NAMED:
                 names += f" and {len(entries) - _NAMED} other columns"
             first = self.source.place(min(row for _, _, row in entries))
-            said.append(f"{self.source.path.name}: cells {what} in {names}, first in {first}; read as no value.")
+            said.append(f"{self.source.name}: cells {what} in {names}, first in {first}; read as no value.")
         return said
 
 

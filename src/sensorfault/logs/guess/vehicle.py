@@ -2,37 +2,17 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 
-from sensorfault.logs.clock import Clock, read_clock
-from sensorfault.logs.entries import FileEntry, SensorEntry
-from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY, measurements
+from sensorfault.logs.guess.columns import NO_SENSOR, OTHER_TIME, QUALITY
+from sensorfault.logs.guess.look import Guess, look_at
 from sensorfault.logs.guess.naming import joined, short_names, stem_of
-from sensorfault.logs.guess.sensors import guess_sensors
-from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.place import Where, files_of
-from sensorfault.logs.readers.formats import read_tables
-from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
-_ROWS = 500_000  # a guess looks at so many rows from the beginning
+_EXPECTED = (OTHER_TIME, QUALITY, NO_SENSOR)
 _RAW = "_uncalibrated"
-
-
-@dataclass(frozen=True)
-class _Guess:
-    path: Path
-    columns: tuple[str, ...]
-    file: FileEntry
-    clock: Clock
-    sensors: list[SensorEntry]
-
-    @property
-    def stem(self) -> str:
-        """What it is called: its table, or its file where that holds one."""
-        return self.file.table or stem_of(self.path)
 
 
 def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> VehicleFile:
@@ -45,26 +25,17 @@ def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> Ve
     Raises:
         LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
     """
-    files, guesses, errors, said = files_of(path), [], [], []
-    for file in files:
-        try:
-            tables = read_tables(file, Ask(tell=tell))
-        except LogError as error:
-            errors.append(error)
-            continue
-        for name, source in tables.items():
-            said += [*(one.sentence(file) for one in source.damage), *source.notes]
-            try:
-                guesses.append(_guess_table(source, name if len(tables) > 1 else None))
-            except LogError as error:
-                errors.append(error if len(tables) == 1 else LogError(f"{error} (table {name})"))
+    files = files_of(path)
+    looked = [look_at(file, tell) for file in files]
+    guesses = [one for look in looked for one in look.guesses]
+    errors = [error for look in looked for error in look.errors]
     if not guesses:
         raise (
             errors[0]
             if len(errors) == 1
             else LogError(f"{path}: none of its {len(errors)} files or tables is a log; the first: {errors[0]}")
         )
-    notes = [*dict.fromkeys(said), *(f"Left out: {error}" for error in errors)]
+    notes = [*(note for look in looked for note in look.notes), *(f"Left out: {error}" for error in errors)]
     _refuse_several_drives(guesses)
     guesses, raw = _calibrated(guesses)
     guesses.sort(key=_octave)
@@ -82,39 +53,7 @@ def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> Ve
     return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
 
 
-def _guess_table(source: Source, table: str | None) -> _Guess:
-    path = source.path
-    head = replace(source, frame=source.frame.head(_ROWS))
-    time, unit, why = guess_time(head)
-    clock = read_clock(head, time, unit)
-    sensors, left_out = _sensors(head, time, clock)
-    tag = path.with_name(path.name + ".tag")
-    has_tag = tag.is_file() and not clock.is_unix
-    file = FileEntry(
-        path=path.name,
-        time=time,
-        unit=unit,
-        tag=tag.name if has_tag else None,
-        table=table,
-        why=why,
-        left_out=tuple(left_out),
-    )
-    return _Guess(path, tuple(source.frame.columns), file, clock, sensors)
-
-
-def _sensors(source: Source, time: str, clock: Clock) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
-    """The sensors that the format says or the columns look like, and the columns left out with the reason why."""
-    if source.sensors:
-        return list(source.sensors), []
-    columns, left_out = measurements(source, time, clock)
-    if not columns:
-        raise LogError(
-            f"{source.path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."
-        )
-    return guess_sensors(source, columns, clock), left_out
-
-
-def _refuse_several_drives(guesses: list[_Guess]) -> None:
+def _refuse_several_drives(guesses: list[Guess]) -> None:
     """Files with the same columns are one log only if their clocks say that they were written at one time."""
     for i, one in enumerate(guesses):
         for other in guesses[:i]:
@@ -128,7 +67,7 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
                 )
 
 
-def _calibrated(guesses: list[_Guess]) -> tuple[list[_Guess], list[str]]:
+def _calibrated(guesses: list[Guess]) -> tuple[list[Guess], list[str]]:
     """The files without those that hold another's raw readings: one device must not vouch for itself."""
     known = {one.stem for one in guesses}
     raw = [one for one in guesses if one.stem.removesuffix(_RAW) in known - {one.stem}]
@@ -136,22 +75,24 @@ def _calibrated(guesses: list[_Guess]) -> tuple[list[_Guess], list[str]]:
     return [one for one in guesses if one not in raw], notes
 
 
-def _octave(one: _Guess) -> int:
+def _octave(one: Guess) -> int:
     """Fast files first: where several say the same, the first is the best. Rates within an octave are alike."""
     return round(math.log2(one.clock.period_s))
 
 
-def _missed(guesses: list[_Guess]) -> list[str]:
+def _missed(guesses: list[Guess]) -> list[str]:
     """A sentence for each file with columns left out that a person might look for."""
     said = []
     for one in guesses:
-        out = [f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY)]
+        out = [
+            f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY, NO_SENSOR)
+        ]
         if out:
             said.append(f"{one.path.name}: columns left out as no measurements: {', '.join(out)}.")
     return said
 
 
-def _untied(guesses: list[_Guess]) -> list[str]:
+def _untied(guesses: list[Guess]) -> list[str]:
     """A sentence for each file whose clock has nothing to do with the others'."""
     tied = [one for one in guesses if one.clock.is_unix or one.file.tag]
     return [

@@ -1,7 +1,7 @@
 """Which reader opens which file. A new format is one more line in FORMATS."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import lru_cache, partial
 from pathlib import Path
@@ -24,6 +24,7 @@ from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
+from sensorfault.logs.readers.ulog import read_ulog
 from sensorfault.logs.readers.utias import looks_utias, read_utias
 from sensorfault.logs.table import LogError
 
@@ -83,6 +84,7 @@ FORMATS = (
     Format("RTKLIB solution", ("*.pos",), _one(read_pos)),
     Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), _once(read_mat)),
+    Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
     Format("u-blox", ("*.ubx",), _once(read_ubx)),
     Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
@@ -155,4 +157,4 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
         tables = read_unpacked(path, lambda file: form.read(file, ask)) if is_packed(path) else form.read(path, ask)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
-    return {name: with_attitude(source) for name, source in tables.items()}
+    return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}

@@ -8,6 +8,7 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
+from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
 
@@ -54,15 +55,9 @@ def _table(path: Path, fields: dict[str, Any]) -> Source | None:
     if not lengths:
         return None
     rows = lengths.most_common(1)[0][0]
-    columns = {name: _column(one) for name, one in vectors.items() if len(one) == rows}
+    columns = {name: native(one) for name, one in vectors.items() if len(one) == rows}
     others = [name for name, one in vectors.items() if len(one) not in (rows, 1)]
     said = (
         f"{path.name}: {counted(len(others), 'vector')} of another length than {rows} left out: {', '.join(others)}.",
     )
     return Source(path, pl.DataFrame(columns), notes=said if others else ())
-
-
-def _column(vector: np.ndarray) -> np.ndarray:
-    """Native float64, or int64 where a float might round."""
-    wide = np.int64 if vector.dtype.kind in "iu" and vector.dtype.itemsize == 8 else np.float64
-    return np.ascontiguousarray(vector, dtype=wide)

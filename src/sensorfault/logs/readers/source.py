@@ -1,6 +1,6 @@
 """What a reader of one format hands on: the file's columns as they stand in it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -42,9 +42,11 @@ ALL = Ask()
 class Source:
     """One file's columns, untouched: numbers where every cell is a number, text elsewhere.
 
+    `table`: which one of its file's, where that holds several.
     `time` and `unit`: the time column and its unit where the format fixes them (RTKLIB does, CSV does not).
     `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
+    `units`: the unit of each column whose format says it, spelled as in units.py.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
 
@@ -56,6 +58,13 @@ class Source:
     notes: tuple[str, ...] = ()
     damage: tuple[Damage, ...] = ()
     sensors: tuple[SensorEntry, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+    table: str = ""
+
+    @property
+    def name(self) -> str:
+        """What a sentence calls it: its file, and its table where that holds several."""
+        return f"{self.path.name} ({self.table})" if self.table else self.path.name
 
     def place(self, row: int) -> str:
         """Where a row stands in the file, for a person."""

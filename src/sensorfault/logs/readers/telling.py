@@ -1,0 +1,36 @@
+"""A file that tells how far it has been read, and where a read came up short."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+_BUFFER_BYTES = 1 << 20
+
+
+class _Raw(io.FileIO):
+    """Tells once for each buffer, so that many small reads cost nothing."""
+
+    def __init__(self, path: Path, tell: Callable[[float], None]) -> None:
+        super().__init__(path, "r")
+        self._size = max(path.stat().st_size, 1)
+        self._tell = tell
+
+    def readinto(self, buffer: Any, /) -> int | None:
+        got = super().readinto(buffer)
+        self._tell(min(1.0, self.tell() / self._size))
+        return got
+
+
+class TellingFile(io.BufferedReader):
+    """`short`: where the last read that got something, but less than it asked for, began; None if there was none."""
+
+    def __init__(self, path: Path, tell: Callable[[float], None]) -> None:
+        super().__init__(_Raw(path, tell), _BUFFER_BYTES)
+        self.short: int | None = None
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        data = super().read(size)
+        if size is not None and 0 < len(data) < size:
+            self.short = self.tell() - len(data)
+        return data

@@ -1,0 +1,95 @@
+"""PX4's logs (`.ulg`): one table for each topic, by pyulog."""
+
+from errno import EINVAL
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import polars as pl
+
+from sensorfault.logs.phrase import times
+from sensorfault.logs.readers.native import native
+from sensorfault.logs.readers.quiet import quiet
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.telling import TellingFile
+from sensorfault.logs.table import LogError
+
+if TYPE_CHECKING:
+    from pyulog import ULog
+
+_MAGIC = b"ULog\x01\x12\x35"
+_TIME = "timestamp"
+
+
+def read_ulog(path: Path, ask: Ask) -> Tables:
+    """Every topic, on the autopilot's clock [us]. `sensor_baro[1]` is the second of several instances of a topic.
+
+    Raises:
+        LogError: empty, not a ULog file, or no topic in it that can be read.
+    """
+    with path.open("rb") as file:
+        head = file.read(len(_MAGIC))
+    if head != _MAGIC:
+        what = "an empty file" if not head else "no ULog (it does not begin with 'ULog')"
+        raise LogError(f"{path}: this is {what}; name a .ulg file as PX4 wrote it.")
+    names = None if ask.tables is None else sorted({name.partition("[")[0] for name in ask.tables})
+    with TellingFile(path, ask.tell) as opened, quiet():
+        log, broken_at = _load(path, opened, names)
+        short, size = opened.short, path.stat().st_size
+    damage = []
+    if broken_at is not None:
+        damage.append(Damage("messages that cannot be read, the first", f"byte {broken_at}", "the others were read"))
+    elif short is not None:
+        damage.append(Damage(f"the file of {size} bytes breaks off inside the message", f"byte {short}"))
+    tables = {_called(one): _table(path, one) for one in log.data_list if _TIME in one.data}
+    tables = {name: table for name, table in tables.items() if ask.wants(name)}
+    if not tables and names is None:
+        where = f" (damaged at {damage[0].where})" if damage else ""
+        raise LogError(f"{path}: no topic with a time in this log{where}; name a log of a whole flight.")
+    return told(tables, _dropouts(path, log), damage)
+
+
+def _load(path: Path, opened: TellingFile, names: list[str] | None) -> "tuple[ULog, int | None]":
+    """The log, and how far into the file its first broken message was noticed."""
+    from pyulog import ULog  # lazily: only this format needs it
+
+    class Located(ULog):  # type: ignore[misc]
+        """pyulog says that a file is corrupt, not where."""
+
+        broken_at: int | None = None
+
+        @property
+        def _file_corrupt(self) -> bool:
+            return self.broken_at is not None
+
+        @_file_corrupt.setter
+        def _file_corrupt(self, corrupt: bool) -> None:
+            if corrupt and self.broken_at is None:
+                self.broken_at = opened.tell()
+
+    try:
+        log = Located(opened, names)
+    except Exception as error:  # a damaged log fails in as many ways as it can be damaged
+        if isinstance(error, OSError) and error.errno != EINVAL:  # a seek to before the file is the content's fault
+            raise
+        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
+        raise LogError(f"{path}: the ULog is damaged ({reason}); copy it from the autopilot again.") from None
+    return log, log.broken_at
+
+
+def _dropouts(path: Path, log: "ULog") -> list[str]:
+    """What the autopilot itself says that it could not write down."""
+    lost_s = sum(one.duration for one in log.dropouts) / 1e3
+    if not log.dropouts:
+        return []
+    return [f"{path.name}: the autopilot could not write {times(len(log.dropouts))}, {lost_s:.3g} s in all."]
+
+
+def _called(topic: Any) -> str:
+    return f"{topic.name}[{topic.multi_id}]" if topic.multi_id else str(topic.name)
+
+
+def _table(path: Path, topic: Any) -> Source:
+    """One topic's fields as columns; padding is none."""
+    fields = {name: field for name, field in topic.data.items() if not name.startswith("_padding")}
+    frame = pl.DataFrame({name: pl.Series(name, native(field), nan_to_null=False) for name, field in fields.items()})
+    return Source(path, frame, _TIME, "us")
