@@ -11,6 +11,7 @@ from sensorfault.logs.phrase import counted
 from sensorfault.logs.stream import Stream
 
 SAME_S = 1e-6  # two clocks' readings this near are one time
+_MOST_NEW = 1_000_000  # ticks put into one gap: three hours at 100 Hz
 Resample = Literal["hold", "linear"]
 
 
@@ -50,11 +51,13 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold") -> OneC
 
 
 def _filled(time: np.ndarray, period: float) -> np.ndarray:
-    """The ticks, and new ones inside each gap."""
+    """The ticks, and new ones inside each gap; but a clock that jumped by years must not fill the memory."""
     step = np.diff(time)
     pieces = [time]
     for i in np.flatnonzero(step > GAP * period):
         count = round(step[i] / period) - 1
+        if count > _MOST_NEW:
+            continue
         pieces.append(time[i] + step[i] * np.arange(1, count + 1) / (count + 1))
     return np.sort(np.concatenate(pieces))
 
