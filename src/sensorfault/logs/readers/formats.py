@@ -7,9 +7,12 @@ from functools import lru_cache
 from pathlib import Path
 
 from sensorfault.logs.readers.attitude import with_attitude
+from sensorfault.logs.readers.bag1 import read_bag1
+from sensorfault.logs.readers.bag2 import first_part, read_bag2
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
 from sensorfault.logs.readers.mat import read_mat
+from sensorfault.logs.readers.mcap import read_mcap
 from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
@@ -71,6 +74,9 @@ FORMATS = (
     Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), _once(read_mat)),
     Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
+    Format("ROS 1 bag", ("*.bag",), _once(read_bag1)),
+    Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part),
+    Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
 )
 SUFFIXES = tuple(dict.fromkeys(name.removeprefix("*") for one in FORMATS for name in one.names))
