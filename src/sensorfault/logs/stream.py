@@ -14,6 +14,7 @@ from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
 
+_NAMED = 6  # columns listed in one sentence
 _LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
 
 
@@ -96,7 +97,9 @@ class _Gaps:
     def notes(self) -> list[str]:
         said = []
         for what, entries in self.found.items():
-            names = ", ".join(f"'{column}' ({count})" for column, count, _ in entries)
+            names = ", ".join(f"'{column}' ({count})" for column, count, _ in entries[:_NAMED])
+            if len(entries) > _NAMED:
+                names += f" and {len(entries) - _NAMED} other columns"
             first = self.source.place(min(row for _, _, row in entries))
             said.append(f"{self.source.name}: cells {what} in {names}, first in {first}; read as no value.")
         return said

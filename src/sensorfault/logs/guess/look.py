@@ -87,11 +87,7 @@ def _guess_table(source: Source, table: str | None, fields: Fields | None) -> Gu
     head = replace(source, frame=source.frame.head(_ROWS))
     time, unit, why = guess_time(head)
     clock = read_clock(head, time, unit)
-    columns, left_out = measurements(head, time, clock, fields)
-    if not columns:
-        raise LogError(
-            f"{path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."
-        )
+    sensors, left_out = _sensors(head, time, clock, fields)
     tag = path.with_name(path.name + ".tag")
     has_tag = tag.is_file() and not clock.is_unix
     file = FileEntry(
@@ -103,4 +99,18 @@ def _guess_table(source: Source, table: str | None, fields: Fields | None) -> Gu
         why=why,
         left_out=tuple(left_out),
     )
-    return Guess(path, tuple(source.frame.columns), file, clock, guess_sensors(head, columns, clock))
+    return Guess(path, tuple(source.frame.columns), file, clock, sensors)
+
+
+def _sensors(
+    source: Source, time: str, clock: Clock, fields: Fields | None
+) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
+    """The sensors that the format says or the columns look like, and the columns left out with the reason why."""
+    if source.sensors:
+        return list(source.sensors), []
+    columns, left_out = measurements(source, time, clock, fields)
+    if not columns:
+        raise LogError(
+            f"{source.path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."
+        )
+    return guess_sensors(source, columns, clock), left_out

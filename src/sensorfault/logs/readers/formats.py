@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 from sensorfault.logs.readers.attitude import with_attitude
@@ -11,6 +11,16 @@ from sensorfault.logs.readers.bag1 import read_bag1
 from sensorfault.logs.readers.bag2 import first_part, read_bag2
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
+from sensorfault.logs.readers.gnss.leader import observations_beside
+from sensorfault.logs.readers.gnss.librsf import looks_librsf, read_librsf
+from sensorfault.logs.readers.gnss.nmea import looks_nmea, read_nmea
+from sensorfault.logs.readers.gnss.rinex import looks_rinex
+from sensorfault.logs.readers.gnss.rinex_nav import read_places
+from sensorfault.logs.readers.gnss.rinex_obs import read_obs
+from sensorfault.logs.readers.gnss.smartloc import looks_smartloc, read_smartloc
+from sensorfault.logs.readers.gnss.sp3 import read_sp3
+from sensorfault.logs.readers.gnss.ubx import read_ubx
+from sensorfault.logs.readers.gzipped import head_of, inner, is_packed, read_unpacked
 from sensorfault.logs.readers.mat import read_mat
 from sensorfault.logs.readers.mcap import read_mcap
 from sensorfault.logs.readers.npy import called_by, read_npy
@@ -18,6 +28,7 @@ from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
 from sensorfault.logs.readers.ulog import read_ulog
+from sensorfault.logs.readers.utias import looks_utias, read_utias
 from sensorfault.logs.table import LogError
 
 _HEAD_BYTES = 4096
@@ -45,7 +56,7 @@ class Format:
 
     def may_be(self, path: Path) -> bool:
         """Whether its files are called so."""
-        return any(fnmatchcase(path.name.lower(), name) for name in self.names)
+        return any(fnmatchcase(inner(path).name.lower(), name) for name in self.names)
 
 
 def _one(read: Callable[[Path], Source]) -> Callable[[Path, Ask], Tables]:
@@ -69,6 +80,9 @@ def _once(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
 
 FORMATS = (
     Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), _one(read_csv)),
+    Format("libRSF measurements", ("*.txt",), _once(read_librsf), looks_librsf),
+    Format("smartLoc measurements", ("*.csv",), _once(read_smartloc), looks_smartloc),
+    Format("UTIAS measurements", ("*.dat",), _one(read_utias), looks_utias),
     Format("Parquet", ("*.parquet",), _one(read_parquet)),
     Format("RTKLIB solution", ("*.pos",), _one(read_pos)),
     Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
@@ -78,6 +92,17 @@ FORMATS = (
     Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part),
     Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
+    Format("u-blox", ("*.ubx",), _once(read_ubx)),
+    Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
+    Format("RINEX observations", ("*.obs", "*.rnx", "*.[0-9][0-9]o"), _once(_one(read_obs)), partial(looks_rinex, "O")),
+    Format(
+        "RINEX navigation",
+        ("*.nav", "*.rnx", "*.[0-9][0-9][nglp]"),
+        _once(_one(read_places)),
+        partial(looks_rinex, "NG"),
+        observations_beside,
+    ),
+    Format("SP3 orbits", ("*.sp3",), _once(_one(read_sp3)), leader=observations_beside),
 )
 SUFFIXES = tuple(dict.fromkeys(name.removeprefix("*") for one in FORMATS for name in one.names))
 
@@ -91,8 +116,7 @@ def format_of(path: Path) -> Format | None:
     named = [one for one in FORMATS if one.may_be(path)]
     if len(named) < 2:
         return named[0] if named else None
-    with path.open("rb") as file:
-        head = file.read(_HEAD_BYTES)
+    head = head_of(path, _HEAD_BYTES)
     sure = [one for one in named if one.looks is not None and one.looks(head)]
     return next(iter([*sure, *(one for one in named if one.looks is None), *named]))
 
@@ -136,7 +160,7 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
         if form is None:
             known = ", ".join(SUFFIXES)
             raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {known}.")
-        tables = form.read(path, ask)
+        tables = read_unpacked(path, lambda file: form.read(file, ask)) if is_packed(path) else form.read(path, ask)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
     return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}

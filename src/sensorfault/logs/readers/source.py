@@ -6,6 +6,7 @@ from pathlib import Path
 
 import polars as pl
 
+from sensorfault.logs.entries import SensorEntry
 from sensorfault.logs.table import LogError
 
 
@@ -43,6 +44,7 @@ class Source:
 
     `table`: which one of its file's, where that holds several.
     `time` and `unit`: the time column and its unit where the format fixes them (RTKLIB does, CSV does not).
+    `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
@@ -55,6 +57,7 @@ class Source:
     first_line: int = 0
     notes: tuple[str, ...] = ()
     damage: tuple[Damage, ...] = ()
+    sensors: tuple[SensorEntry, ...] = ()
     units: Mapping[str, str] = field(default_factory=dict)
     table: str = ""
 
