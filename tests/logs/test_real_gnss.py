@@ -155,7 +155,13 @@ def test_labels_of_smartloc(real_data: Path) -> None:
     [
         ("Robot1_Odometry", 61785, 887.947, {"forward_speed.speed": 0.086}, {"forward_speed.speed": 0.0}),
         ("Robot1_Groundtruth", 49241, 771.873, {"local_position.x": 1.4127729}, {"local_position.x": 3.7738052}),
-        ("Robot1_Measurement", 1234, 737.567, {"barcode_14.range": 3.787, "barcode_90.bearing": -0.005}, {"barcode_9.range": 1.11}),
+        (
+            "Robot1_Measurement",
+            1234,
+            737.567,
+            {"barcode_14.range": 3.787, "barcode_90.bearing": -0.005},
+            {"barcode_9.range": 1.11},
+        ),
     ],
 )
 def test_packed_tables_of_robots(

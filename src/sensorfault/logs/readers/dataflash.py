@@ -15,7 +15,7 @@ from sensorfault.logs.units import known, spelled
 
 HEAD = b"\xa3\x95"  # every message begins so
 CLOCKS = (("TimeUS", "us"), ("T", "ms"), ("TimeMS", "ms"))  # an older GPS message has the autopilot's time in T
-_INSTANCE = "I"
+INSTANCE = "I"
 _HEAD_BYTES = 3
 _PADDING = 528  # a log is written in pages: what is left at the end of the last one is no damage
 _PLAIN = {"b": "i1", "B": "u1", "h": "<i2", "H": "<u2", "i": "<i4", "I": "<u4", "q": "<i8", "Q": "<u8", "M": "u1",
@@ -78,7 +78,7 @@ def _by_instance(path: Path, form: Any, messages: np.ndarray, clock: tuple[str, 
     """One kind of message; of several devices one table each."""
     record = np.dtype([(name, _PLAIN[c]) for name, c in zip(form.columns, form.format, strict=True)])
     rows = np.ascontiguousarray(messages).view(record)[:, 0]
-    which = form.instance_field or _INSTANCE
+    which = form.instance_field or INSTANCE
     if which not in form.columns or rows[which].dtype.kind not in "iu":
         return {form.name: _table(path, form, rows, clock)}
     devices = {int(one): rows[rows[which] == one] for one in np.unique(rows[which])}

@@ -11,6 +11,7 @@ from sensorfault.logs.readers.bag1 import read_bag1
 from sensorfault.logs.readers.bag2 import first_part, read_bag2
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
+from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
 from sensorfault.logs.readers.gnss.leader import observations_beside
 from sensorfault.logs.readers.gnss.librsf import looks_librsf, read_librsf
 from sensorfault.logs.readers.gnss.nmea import looks_nmea, read_nmea
@@ -22,6 +23,7 @@ from sensorfault.logs.readers.gnss.sp3 import read_sp3
 from sensorfault.logs.readers.gnss.ubx import read_ubx
 from sensorfault.logs.readers.gzipped import head_of, inner, is_packed, read_unpacked
 from sensorfault.logs.readers.mat import read_mat
+from sensorfault.logs.readers.mavlink import read_tlog
 from sensorfault.logs.readers.mcap import read_mcap
 from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
@@ -92,6 +94,8 @@ FORMATS = (
     Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part),
     Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
+    Format("ArduPilot DataFlash text", ("*.log",), _once(read_dataflash_text), looks_dataflash_text),
+    Format("MAVLink telemetry", ("*.tlog",), _once(read_tlog)),
     Format("u-blox", ("*.ubx",), _once(read_ubx)),
     Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
     Format("RINEX observations", ("*.obs", "*.rnx", "*.[0-9][0-9]o"), _once(_one(read_obs)), partial(looks_rinex, "O")),

@@ -1,6 +1,7 @@
 """Messages by topic -> one table for each topic that holds numbers."""
 
 from array import array
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +19,13 @@ _NS = 10**9
 
 
 class Topics:
-    """Gathers messages. What is kept of a message is eight bytes a number, so that pictures cost nothing."""
+    """Gathers messages. What is kept of a message is eight bytes a number, so that pictures cost nothing.
 
-    def __init__(self, path: Path, ask: Ask) -> None:
-        self.path, self.ask = path, ask
+    `unit_of(type, field)`: the unit that the format's documents name, or nothing.
+    """
+
+    def __init__(self, path: Path, ask: Ask, unit_of: Callable[[str, str], str] = si_unit_of) -> None:
+        self.path, self.ask, self.unit_of = path, ask, unit_of
         self._topics: dict[str, _Topic] = {}
         self._unknown: dict[str, str] = {}
 
@@ -44,7 +48,7 @@ class Topics:
             if len(of_it.fields.names) == 0:
                 bare.append(f"{topic} ({of_it.kind})")
                 continue
-            tables[topic] = of_it.table(self.path, topic)
+            tables[topic] = of_it.table(self.path, topic, self.unit_of)
             cut += [f"{topic}.{field}" for field in of_it.fields.left_out]
         unknown = [f"{topic} ({why})" for topic, why in sorted(self._unknown.items())]
         for what, listed in (
@@ -68,7 +72,7 @@ class _Topic:
         self._stamps.append(_stamp_ns(message))
         self._rows.extend(row)
 
-    def table(self, path: Path, topic: str) -> Source:
+    def table(self, path: Path, topic: str, unit_of: Callable[[str, str], str]) -> Source:
         received, stamp = np.array(self._received), np.array(self._stamps)
         rows = np.array(self._rows).reshape(len(received), -1)
         names = [(i, name) for i, name in enumerate(self.fields.names) if not name.startswith(f"{STAMP}.")]
@@ -76,7 +80,7 @@ class _Topic:
         columns |= {name: np.ascontiguousarray(rows[:, i]) for i, name in names}
         frame = pl.DataFrame({name: pl.Series(name, column, nan_to_null=False) for name, column in columns.items()})
         time, notes = _clock(path, topic, received, stamp)
-        units = {name: unit for _, name in names if (unit := si_unit_of(self.kind, name))}
+        units = {name: unit for _, name in names if (unit := unit_of(self.kind, name))}
         return Source(path, frame, time, "ns", notes=tuple(notes), units=units)
 
 
