@@ -21,9 +21,9 @@ def test_what_a_log_holds(run: Run, tmp_path: Path) -> None:
     (tmp_path / "flight.ulg").write_bytes(flight()[:-3])
     said = run("info", "flight.ulg", "--json", "info.json")
     assert said.code == 0, said.err
-    assert "breaks off inside the message at byte" in said.err
+    assert "breaks off inside a message at byte" in said.err
     told = json.loads((tmp_path / "info.json").read_text())
-    assert told["damage"][0].startswith("flight.ulg: the file of")
+    assert told["damage"][0].startswith("flight.ulg: the file breaks off")
     sensors = {sensor["name"]: sensor for sensor in told["sensors"]}
     assert sensors["barometer"]["rate_hz"] == pytest.approx(10)
     assert sensors["gyro"]["gaps"] == 0

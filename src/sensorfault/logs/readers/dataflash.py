@@ -56,9 +56,11 @@ def _index(path: Path, ask: Ask) -> tuple[Mapping[int, Any], list[Any]]:
     from pymavlink.DFReader import DFReader_binary  # lazily: only this format needs it
 
     with quiet():
+        reader = DFReader_binary.__new__(DFReader_binary)
         try:
-            reader = DFReader_binary(str(path), progress_callback=lambda percent: ask.tell(percent / 100))
+            reader.__init__(str(path), progress_callback=lambda percent: ask.tell(percent / 100))
         except Exception as error:  # a damaged log fails in as many ways as it can be damaged
+            reader.filehandle.close()  # which it has opened first of all
             reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
             raise LogError(
                 f"{path}: the DataFlash log is damaged ({reason}); copy it from the autopilot again."
@@ -71,7 +73,7 @@ def _index(path: Path, ask: Ask) -> tuple[Mapping[int, Any], list[Any]]:
 def _is_whole(form: Any) -> bool:
     """Whether the kind of message is described without contradiction."""
     fits = np.dtype([(str(i), _PLAIN[c]) for i, c in enumerate(form.format)]).itemsize == form.len - _HEAD_BYTES
-    return fits and len(form.columns) == len(form.format) == len(set(form.columns))
+    return fits and len(form.columns) == len(form.format) == len(set(form.columns) - {""})
 
 
 def _by_instance(path: Path, form: Any, messages: np.ndarray, clock: tuple[str, str]) -> Tables:

@@ -99,7 +99,7 @@ def _clock(path: Path, topic: str, received: np.ndarray, stamp: np.ndarray) -> t
     """The stamps, which tell when was measured, if they can be believed; else when the recorder heard of it."""
     if not stamp.any():
         return RECEIVED, []
-    if np.mean(np.diff(stamp) > 0) < _RISING and len(stamp) > 1:
+    if len(stamp) > 1 and np.mean(np.diff(stamp) > 0) < _RISING:
         return RECEIVED, [f"{path.name}: the stamps of {topic} do not rise; the time of reception counts instead."]
     apart_s = float(np.median((stamp - received) / _NS))
     if abs(apart_s) > _APART_S:
