@@ -39,19 +39,21 @@ class _Broken(Exception):
 
 def _records(file: BufferedIOBase, size: int, recording: Recording, within: str) -> None:
     """Every record to the end or the first that does not fit. `within`: where the chunk that they are in begins."""
-    from rosbags.rosbag1.reader import ReaderError, RecordType
+    from rosbags.rosbag1.reader import Header, ReaderError, RecordType
 
     while (start := file.tell()) < size:
         where = within or f"byte {start}"
         try:
-            header, data = _record(file, size)
+            header, data = _record(file, size, Header)
             kind = header.get_uint8("op")
             if kind == RecordType.CHUNK and not within:
                 _chunk(header.get_string("compression"), data, recording, where)
             elif kind == RecordType.CONNECTION:
                 _connection(header, data, recording)
-            elif kind == RecordType.MSGDATA:
-                recording.take(header.get_uint32("conn"), header.get_time("time"), data, where)
+            elif kind == RecordType.MSGDATA and not recording.take(
+                header.get_uint32("conn"), header.get_time("time"), data
+            ):
+                recording.cannot_decode(where)
         except (_Broken, ReaderError, UnicodeDecodeError) as broken:
             if isinstance(broken, _Broken) and broken.header and broken.header.get("compression") == b"none":
                 _chunk("none", broken.data, recording, where)
@@ -59,15 +61,13 @@ def _records(file: BufferedIOBase, size: int, recording: Recording, within: str)
             return
 
 
-def _record(file: BufferedIOBase, size: int) -> tuple[Any, bytes]:
-    """Header and data of one record."""
-    from rosbags.rosbag1.reader import Header
-
+def _record(file: BufferedIOBase, size: int, reader: Any) -> tuple[Any, bytes]:
+    """Header, by rosbags' `reader` of headers, and data of one record."""
     words = file.read(4)
     length = int.from_bytes(words, "little")
     if len(words) < 4 or length > size - file.tell():
         raise _Broken
-    header = Header.read(BytesIO(words + file.read(length)))
+    header = reader.read(BytesIO(words + file.read(length)))
     words = file.read(4)
     length = int.from_bytes(words, "little")
     if len(words) < 4 or length > size - file.tell():

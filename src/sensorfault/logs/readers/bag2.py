@@ -61,7 +61,8 @@ def _part(path: Path, recording: Recording, ask: Ask) -> None:
             last = _last(base)
             for number, received, raw in base.execute("SELECT topic_id, timestamp, data FROM messages ORDER BY rowid"):
                 count += 1
-                recording.take((path, number), received, _plain(raw), f"message {count}")
+                if not recording.take((path, number), received, _plain(raw)):
+                    recording.cannot_decode(f"message {count}")
                 if count % _TELL_EVERY == 0:
                     ask.tell(min(1.0, count / last))
     except (sqlite3.Error, TypeError, ValueError, OverflowError) as error:

@@ -28,16 +28,21 @@ class Recording:
         else:
             self._channels[channel] = topic, kind, decode
 
-    def take(self, channel: Hashable, received_ns: int, raw: bytes, where: str) -> None:
-        """One message; one that cannot be decoded is counted."""
+    def take(self, channel: Hashable, received_ns: int, raw: bytes) -> bool:
+        """One message; False if it cannot be decoded."""
         known = self._channels.get(channel)
         if known is None:
-            return
+            return True
         topic, kind, decode = known
         try:
             self._topics.take(topic, kind, received_ns, decode(raw))
         except Exception:  # a damaged message fails in as many ways as it can be damaged
-            self._count("messages cannot be decoded", f"{where} ({topic})")
+            return False
+        return True
+
+    def cannot_decode(self, where: str) -> None:
+        """A message that is not what its channel says."""
+        self._count("messages cannot be decoded", where)
 
     def cannot_unpack(self, where: str) -> None:
         """A chunk of messages whose compression or checksum is wrong."""

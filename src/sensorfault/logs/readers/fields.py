@@ -1,6 +1,6 @@
 """The numbers in a message of any type: their paths, and a quick way to take them out."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, MutableSequence, Sequence
 from math import nan
 from operator import attrgetter
 from typing import Any
@@ -15,24 +15,38 @@ class Fields:
     """The numbers of one type of message, found in its first.
 
     `names`: `angular_velocity.x`, `position[0]`. `left_out`: paths of arrays that are too long, and of lists of others.
-    `take(message)`: one number for each name, NaN where this message has none.
     """
 
     def __init__(self, first: Any) -> None:
         self.left_out: list[str] = []
         found = list(self._walk(first, ""))
         single = [path for path, count in found if count is None]
-        self._scalars = _getter(single, first) if single else None
-        self._arrays = [(_getter([path], first), count) for path, count in found if count is not None]
-        self.names = [*single, *(f"{path}[{i}]" for path, count in found for i in range(count or 0))]
-        self._width = len(single)
+        several = [(path, count) for path, count in found if count is not None]
+        self.names = [*single, *(f"{path}[{i}]" for path, count in several for i in range(count))]
+        self._single = len(single)
+        self._counts = [count for _, count in several]
+        self._get = _getter([*single, *(path for path, _ in several)], first) if found else None
 
-    def take(self, message: Any) -> list[float]:
-        row: list[float] = [] if self._scalars is None else [_number(one) for one in self._scalars(message)]
-        for get, count in self._arrays:
-            (array,) = get(message)
-            part = [_number(one) for one in array[:count]] if isinstance(array, list | tuple | np.ndarray) else []
-            row += part + [nan] * (count - len(part))
+    def take(self, message: Any, rows: MutableSequence[float]) -> None:
+        """Append one number for each name, NaN where this message has none; nothing if it fails."""
+        if self._get is None:
+            return
+        start, found = len(rows), self._get(message)
+        try:
+            rows.extend(found[: self._single])
+            for part, count in zip(found[self._single :], self._counts, strict=True):
+                rows.extend(part.tolist())
+                if len(part) != count:
+                    raise TypeError
+        except (TypeError, AttributeError):  # not as in the first message: one by one
+            del rows[start:]
+            rows.extend(self._one_by_one(found))
+
+    def _one_by_one(self, found: Sequence[Any]) -> list[float]:
+        row = [_number(one) for one in found[: self._single]]
+        for part, count in zip(found[self._single :], self._counts, strict=True):
+            known = [_number(one) for one in part[:count]] if isinstance(part, list | tuple | np.ndarray) else []
+            row += known + [nan] * (count - len(known))
         return row
 
     def _walk(self, part: Any, path: str) -> Iterator[tuple[str, int | None]]:

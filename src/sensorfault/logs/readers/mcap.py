@@ -38,10 +38,20 @@ def read_mcap(path: Path, ask: Ask) -> Tables:
 def _records(file: TellingFile, path: Path, recording: Recording) -> None:
     """Every record of the data, to their end or the first that does not fit."""
     from mcap.exceptions import McapError
-    from mcap.records import Chunk, DataEnd
+    from mcap.records import Channel, Chunk, DataEnd, Message, Schema
     from mcap.stream_reader import StreamReader
 
     schemas: dict[int, Any] = {}
+
+    def take(record: Any, start: int) -> None:
+        if isinstance(record, Message):
+            if not recording.take((path, record.channel_id), record.log_time, record.data):
+                recording.cannot_decode(f"byte {start}")
+        elif isinstance(record, Schema):
+            schemas[record.id] = record
+        elif isinstance(record, Channel):
+            _open(record, schemas.get(record.schema_id), path, recording)
+
     reader = StreamReader(file, skip_magic=True, emit_chunks=True, record_size_limit=max(_LARGEST, path.stat().st_size))
     records, start = reader.records, file.tell()
     while True:
@@ -51,14 +61,13 @@ def _records(file: TellingFile, path: Path, recording: Recording) -> None:
             record = None
         if record is None or file.short is not None:
             for one in _cut_chunk(file, start):
-                _take(one, path, schemas, recording, f"byte {start}")
+                take(one, start)
             recording.damage.append(Damage("the recording breaks off, or holds what is no record,", f"byte {start}"))
             return
         if isinstance(record, DataEnd):
             return
-        where = f"byte {start}"
-        for one in _chunk(record, recording, where) if isinstance(record, Chunk) else [record]:
-            _take(one, path, schemas, recording, where)
+        for one in _chunk(record, recording, f"byte {start}") if isinstance(record, Chunk) else [record]:
+            take(one, start)
         start = file.tell()
 
 
@@ -96,19 +105,11 @@ def _cut_chunk(file: TellingFile, start: int) -> list[Any]:
     return found[:-1]  # the last may be half of one
 
 
-def _take(record: Any, path: Path, schemas: dict[int, Any], recording: Recording, where: str) -> None:
-    from mcap.records import Channel, Message, Schema
-
-    if isinstance(record, Schema):
-        schemas[record.id] = record
-    elif isinstance(record, Channel):
-        schema = schemas.get(record.schema_id)
-        kind = schema.name if schema is not None and schema.name else "no type"
-        decode = _decoder(record.message_encoding, schema)
-        said = kind if decode is not None else f"{kind}, {record.message_encoding or 'no encoding'}"
-        recording.open((path, record.id), record.topic, said, decode)
-    elif isinstance(record, Message):
-        recording.take((path, record.channel_id), record.log_time, record.data, where)
+def _open(channel: Any, schema: Any, path: Path, recording: Recording) -> None:
+    kind = schema.name if schema is not None and schema.name else "no type"
+    decode = _decoder(channel.message_encoding, schema)
+    said = kind if decode is not None else f"{kind}, {channel.message_encoding or 'no encoding'}"
+    recording.open((path, channel.id), channel.topic, said, decode)
 
 
 def _decoder(encoding: str, schema: Any) -> Decoder | None:

@@ -2,6 +2,7 @@
 
 from array import array
 from collections.abc import Callable
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ class Topics:
     def take(self, topic: str, kind: str, received_ns: int, message: Any) -> None:
         """One decoded message."""
         if topic not in self._topics:
-            self._topics[topic] = _Topic(kind, Fields(message))
+            self._topics[topic] = _Topic(kind, message)
         self._topics[topic].take(received_ns, message)
 
     def cannot(self, topic: str, why: str) -> None:
@@ -62,15 +63,20 @@ class Topics:
 
 
 class _Topic:
-    def __init__(self, kind: str, fields: Fields) -> None:
-        self.kind, self.fields = kind, fields
+    def __init__(self, kind: str, first: Any) -> None:
+        self.kind, self.fields = kind, Fields(first)
+        self._stamp = None if isinstance(first, dict) or not _stamp_ns(first) else attrgetter(f"{STAMP}")
         self._received, self._stamps, self._rows = array("q"), array("q"), array("d")
 
     def take(self, received_ns: int, message: Any) -> None:
-        row = self.fields.take(message)  # first: a message that fails must not leave half of itself
+        if self._stamp is not None:
+            stamp = self._stamp(message)
+            stamp_ns = stamp.sec * _NS + stamp.nanosec
+        else:
+            stamp_ns = _stamp_ns(message)
+        self.fields.take(message, self._rows)
         self._received.append(received_ns)
-        self._stamps.append(_stamp_ns(message))
-        self._rows.extend(row)
+        self._stamps.append(stamp_ns)
 
     def table(self, path: Path, topic: str, unit_of: Callable[[str, str], str]) -> Source:
         received, stamp = np.array(self._received), np.array(self._stamps)
