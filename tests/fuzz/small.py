@@ -2,6 +2,7 @@
 
 import gzip
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from pyubx2 import GET, UBXMessage
 from scipy.io import savemat
 
 from fuzz import texts
+from logs import written_ardupilot, written_dataflash, written_ros, written_ulog
 
 TIME = np.arange(60) / 10
 COLUMNS = {"t": TIME, "ax": np.sin(TIME), "ay": np.cos(TIME), "az": 9.8 + 0.1 * np.sin(3 * TIME)}
@@ -103,6 +105,19 @@ def nmea(folder: Path) -> Path:
     return path
 
 
+def _bytes(name: str, content: Callable[[], bytes]) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        path = folder / name
+        path.write_bytes(content())
+        return path
+
+    return write
+
+
+def _bag2(folder: Path) -> Path:
+    return written_ros.bag2(folder / "drive")
+
+
 SMALL: dict[str, Callable[[Path], Path]] = {
     "text table": _csv,
     "gzip": _gzipped,
@@ -113,6 +128,13 @@ SMALL: dict[str, Callable[[Path], Path]] = {
     "libRSF measurements": _text("car_Input.txt", texts.librsf),
     "smartLoc measurements": _text("RXM-RAWX.csv", texts.smartloc),
     "UTIAS measurements": _text("Robot1_Measurement.dat", texts.utias),
+    "PX4 ULog": _bytes("flight.ulg", partial(written_ulog.flight, 1.0)),
+    "ArduPilot DataFlash": _bytes("flight.bin", partial(written_dataflash.flight, seconds=1.0)),
+    "ArduPilot DataFlash text": _text("flight.log", partial(written_ardupilot.text, 1.0)),
+    "MAVLink telemetry": _bytes("flight.tlog", partial(written_ardupilot.tlog, 2.0)),
+    "ROS 1 bag": lambda folder: written_ros.bag1(folder / "drive.bag"),
+    "ROS 2 bag": _bag2,
+    "MCAP": lambda folder: written_ros.mcap(folder / "drive.mcap"),
     "u-blox": ubx,
     "NMEA": nmea,
     "RINEX observations": _text("site.obs", texts.rinex_3),

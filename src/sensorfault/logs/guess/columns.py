@@ -44,7 +44,7 @@ def measurements(
     for name in source.frame.columns:
         if name == time:
             continue
-        meaning = _meaning(source, name) if fields is None else fields.get(name)
+        meaning = read_name(name, source.units.get(name, "")) if fields is None else fields.get(name)
         if meaning is None:
             left_out.append((name, NO_SENSOR))
         elif meaning.kind == "time":
@@ -68,12 +68,6 @@ def measurements(
                 columns.append(column)
     headerless = bool(columns) and all(re.fullmatch(r"c\d+", column.name) for column in columns)
     return _by_value(columns) if headerless else columns, left_out
-
-
-def _meaning(source: Source, name: str) -> Meaning:
-    """What a column's name says, and its format of its unit."""
-    meaning = read_name(name)
-    return replace(meaning, unit=source.units.get(name, meaning.unit))
 
 
 def _no_measurement(column: Column) -> str:

@@ -1,5 +1,6 @@
 """What one file of a log holds: which of its tables are sensors, and what."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
 
+_COMMAND = re.compile(r"(^|[_/])(cmd|command|setpoint|goal|target|desired)([_/]|$)", re.IGNORECASE)
 _ROWS = 500_000  # a guess looks at so many rows from the beginning
 
 
@@ -61,7 +63,10 @@ def look_at(file: Path, tell: Callable[[float], None]) -> Look:
                 f"{', '.join(sorted(set(tables) - set(used)))}."
             )
             return Look(guesses, errors, list(dict.fromkeys(said)))
-    guesses, errors = _guess_tables(tables, None)
+    commands = [name for name in tables if _COMMAND.search(name)]
+    if commands:
+        said.append(f"{file.name}: commands, no measurements, so left out: {', '.join(commands)}.")
+    guesses, errors = _guess_tables({name: one for name, one in tables.items() if name not in commands}, None)
     return Look(guesses, errors, list(dict.fromkeys(said)))
 
 

@@ -77,17 +77,20 @@ class Meaning:
     unit: str
 
 
-def read_name(column: str) -> Meaning:
-    """What a column's name says. An array's first three elements may be its axes: `gyro_rad[0]` is x."""
+def read_name(column: str, unit: str = "") -> Meaning:
+    """What a column's name says; `unit`: what its format says.
+
+    An array's first three elements may be its axes: `gyro_rad[0]` is x.
+    """
     element = re.fullmatch(r"(.+)\[([012])\]", column)
     if element:
-        plain, unit = _without_unit("_".join(_tokens(element[1])))
-        axis = _read(f"{plain}_{'xyz'[int(element[2])]}", unit)
+        plain, ending = _without_unit("_".join(_tokens(element[1])))
+        axis = _read(f"{plain}_{'xyz'[int(element[2])]}", unit or ending)
         if axis.kind not in ("", "quality", "quaternion", "time"):
             return axis
-    plain, unit = _split_unit(column)
+    plain, bracket = _split_unit(column)
     bare, ending = _without_unit("_".join(_tokens(plain)) or re.sub(r"\W+", "_", column).lower())
-    return _read(bare, unit or ending)
+    return _read(bare, unit or bracket or ending)
 
 
 def _without_unit(name: str) -> tuple[str, str]:

@@ -15,7 +15,7 @@ from sensorfault.logs.units import known, spelled
 
 HEAD = b"\xa3\x95"  # every message begins so
 CLOCKS = (("TimeUS", "us"), ("T", "ms"), ("TimeMS", "ms"))  # an older GPS message has the autopilot's time in T
-_INSTANCE = "I"
+INSTANCE = "I"
 _HEAD_BYTES = 3
 _PADDING = 528  # a log is written in pages: what is left at the end of the last one is no damage
 _PLAIN = {"b": "i1", "B": "u1", "h": "<i2", "H": "<u2", "i": "<i4", "I": "<u4", "q": "<i8", "Q": "<u8", "M": "u1",
@@ -56,9 +56,11 @@ def _index(path: Path, ask: Ask) -> tuple[Mapping[int, Any], list[Any]]:
     from pymavlink.DFReader import DFReader_binary  # lazily: only this format needs it
 
     with quiet():
+        reader = DFReader_binary.__new__(DFReader_binary)
         try:
-            reader = DFReader_binary(str(path), progress_callback=lambda percent: ask.tell(percent / 100))
+            reader.__init__(str(path), progress_callback=lambda percent: ask.tell(percent / 100))
         except Exception as error:  # a damaged log fails in as many ways as it can be damaged
+            reader.filehandle.close()  # which it has opened first of all
             reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
             raise LogError(
                 f"{path}: the DataFlash log is damaged ({reason}); copy it from the autopilot again."
@@ -71,14 +73,14 @@ def _index(path: Path, ask: Ask) -> tuple[Mapping[int, Any], list[Any]]:
 def _is_whole(form: Any) -> bool:
     """Whether the kind of message is described without contradiction."""
     fits = np.dtype([(str(i), _PLAIN[c]) for i, c in enumerate(form.format)]).itemsize == form.len - _HEAD_BYTES
-    return fits and len(form.columns) == len(form.format) == len(set(form.columns))
+    return fits and len(form.columns) == len(form.format) == len(set(form.columns) - {""})
 
 
 def _by_instance(path: Path, form: Any, messages: np.ndarray, clock: tuple[str, str]) -> Tables:
     """One kind of message; of several devices one table each."""
     record = np.dtype([(name, _PLAIN[c]) for name, c in zip(form.columns, form.format, strict=True)])
     rows = np.ascontiguousarray(messages).view(record)[:, 0]
-    which = form.instance_field or _INSTANCE
+    which = form.instance_field or INSTANCE
     if which not in form.columns or rows[which].dtype.kind not in "iu":
         return {form.name: _table(path, form, rows, clock)}
     devices = {int(one): rows[rows[which] == one] for one in np.unique(rows[which])}

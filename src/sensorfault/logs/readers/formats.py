@@ -7,8 +7,11 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from sensorfault.logs.readers.attitude import with_attitude
+from sensorfault.logs.readers.bag1 import read_bag1
+from sensorfault.logs.readers.bag2 import first_part, read_bag2
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
+from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
 from sensorfault.logs.readers.gnss.leader import observations_beside
 from sensorfault.logs.readers.gnss.librsf import looks_librsf, read_librsf
 from sensorfault.logs.readers.gnss.nmea import looks_nmea, read_nmea
@@ -20,6 +23,8 @@ from sensorfault.logs.readers.gnss.sp3 import read_sp3
 from sensorfault.logs.readers.gnss.ubx import read_ubx
 from sensorfault.logs.readers.gzipped import head_of, inner, is_packed, read_unpacked
 from sensorfault.logs.readers.mat import read_mat
+from sensorfault.logs.readers.mavlink import read_tlog
+from sensorfault.logs.readers.mcap import read_mcap
 from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
@@ -85,7 +90,12 @@ FORMATS = (
     Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), _once(read_mat)),
     Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
+    Format("ROS 1 bag", ("*.bag",), _once(read_bag1)),
+    Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part),
+    Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
+    Format("ArduPilot DataFlash text", ("*.log",), _once(read_dataflash_text), looks_dataflash_text),
+    Format("MAVLink telemetry", ("*.tlog",), _once(read_tlog)),
     Format("u-blox", ("*.ubx",), _once(read_ubx)),
     Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
     Format("RINEX observations", ("*.obs", "*.rnx", "*.[0-9][0-9]o"), _once(_one(read_obs)), partial(looks_rinex, "O")),

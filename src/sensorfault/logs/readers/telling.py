@@ -22,6 +22,11 @@ class _Raw(io.FileIO):
         return got
 
 
+def open_telling(path: Path, tell: Callable[[float], None]) -> io.BufferedReader:
+    """A file that tells how far it has been read, at no cost for each of many small reads."""
+    return io.BufferedReader(_Raw(path, tell), _BUFFER_BYTES)
+
+
 class TellingFile(io.BufferedReader):
     """`short`: where the last read that got something, but less than it asked for, began; None if there was none."""
 

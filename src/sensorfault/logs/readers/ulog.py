@@ -1,6 +1,8 @@
 """PX4's logs (`.ulg`): one table for each topic, by pyulog."""
 
+import struct
 from errno import EINVAL
+from io import BufferedReader
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,7 @@ from sensorfault.logs.phrase import times
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
-from sensorfault.logs.readers.telling import TellingFile
+from sensorfault.logs.readers.telling import open_telling
 from sensorfault.logs.table import LogError
 
 if TYPE_CHECKING:
@@ -32,14 +34,13 @@ def read_ulog(path: Path, ask: Ask) -> Tables:
         what = "an empty file" if not head else "no ULog (it does not begin with 'ULog')"
         raise LogError(f"{path}: this is {what}; name a .ulg file as PX4 wrote it.")
     names = None if ask.tables is None else sorted({name.partition("[")[0] for name in ask.tables})
-    with TellingFile(path, ask.tell) as opened, quiet():
-        log, broken_at = _load(path, opened, names)
-        short, size = opened.short, path.stat().st_size
+    with open_telling(path, ask.tell) as opened, quiet():
+        log, broken_at, cut = _load(path, opened, names)
     damage = []
     if broken_at is not None:
         damage.append(Damage("messages that cannot be read, the first", f"byte {broken_at}", "the others were read"))
-    elif short is not None:
-        damage.append(Damage(f"the file of {size} bytes breaks off inside the message", f"byte {short}"))
+    elif cut:
+        damage.append(Damage("the file breaks off inside a message", f"byte {path.stat().st_size}"))
     tables = {_called(one): _table(path, one) for one in log.data_list if _TIME in one.data}
     tables = {name: table for name, table in tables.items() if ask.wants(name)}
     if not tables and names is None:
@@ -48,8 +49,8 @@ def read_ulog(path: Path, ask: Ask) -> Tables:
     return told(tables, _dropouts(path, log), damage)
 
 
-def _load(path: Path, opened: TellingFile, names: list[str] | None) -> "tuple[ULog, int | None]":
-    """The log, and how far into the file its first broken message was noticed."""
+def _load(path: Path, opened: BufferedReader, names: list[str] | None) -> "tuple[ULog, int | None, bool]":
+    """The log, how far into the file its first broken message was noticed, and whether its last one is cut."""
     from pyulog import ULog  # lazily: only this format needs it
 
     class Located(ULog):  # type: ignore[misc]
@@ -66,6 +67,16 @@ def _load(path: Path, opened: TellingFile, names: list[str] | None) -> "tuple[UL
             if corrupt and self.broken_at is None:
                 self.broken_at = opened.tell()
 
+        class _MessageHeader(ULog._MessageHeader):  # type: ignore[misc]
+            def initialize(self, data: bytes) -> None:
+                try:
+                    self.msg_size, self.msg_type = unpack(data)
+                except struct.error:
+                    left.append(len(data))
+                    raise
+
+    unpack = struct.Struct("<HB").unpack
+    left: list[int] = []  # bytes of a header that the file ended in; nothing: it ended in what comes behind one
     try:
         log = Located(opened, names)
     except Exception as error:  # a damaged log fails in as many ways as it can be damaged
@@ -73,7 +84,7 @@ def _load(path: Path, opened: TellingFile, names: list[str] | None) -> "tuple[UL
             raise
         reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
         raise LogError(f"{path}: the ULog is damaged ({reason}); copy it from the autopilot again.") from None
-    return log, log.broken_at
+    return log, log.broken_at, left[-1:] != [0]
 
 
 def _dropouts(path: Path, log: "ULog") -> list[str]:
