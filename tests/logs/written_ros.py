@@ -59,6 +59,19 @@ def messages(store: Any) -> list[tuple[str, str, int, Any]]:
             written.append(("/pressure", "sensor_msgs/msg/FluidPressure", late, pressure))
             twist = t["geometry_msgs/msg/Twist"](linear=vector(s, 0.0, 0.0), angular=vector(0.0, 0.0, np.sin(s)))
             written.append(("/cmd_vel", "geometry_msgs/msg/Twist", late, twist))
+            joints = t["sensor_msgs/msg/JointState"](
+                header=head, name=["a"] * 4, position=np.arange(4) + s, velocity=np.arange(4) * s, effort=np.zeros(4)
+            )
+            written.append(("/joints", "sensor_msgs/msg/JointState", late, joints))
+            pose = t["geometry_msgs/msg/Pose"](t["geometry_msgs/msg/Point"](s, 2 * s, 0.0), turn)
+            turning = t["geometry_msgs/msg/Twist"](vector(1 + s, 0.0, 0.0), vector(0.0, 0.0, np.sin(s)))
+            odometry = t["nav_msgs/msg/Odometry"](
+                header=head,
+                child_frame_id="base",
+                pose=t["geometry_msgs/msg/PoseWithCovariance"](pose, np.zeros(36)),
+                twist=t["geometry_msgs/msg/TwistWithCovariance"](turning, np.zeros(36)),
+            )
+            written.append(("/odom", "nav_msgs/msg/Odometry", late, odometry))
             text = t["std_msgs/msg/String"](data="hello")
             written.append(("/chatter", "std_msgs/msg/String", late, text))
     return written

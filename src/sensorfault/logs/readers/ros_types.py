@@ -16,6 +16,9 @@ _UNITS = tuple(
         (r"(^|\.)linear\.[xyz]$", "m/s"),
         (r"(^|\.)position\.[xyz]$", "m"),
         (r"(^|\.)magnetic_field\.[xyz]$", "T"),
+        (r"^position\[\d+\]$", "rad"),  # of a JointState
+        (r"^velocity\[\d+\]$", "rad/s"),
+        (r"^effort\[\d+\]$", "Nm"),
         (r"^fluid_pressure$", "Pa"),
         (r"^(latitude|longitude)$", "deg"),
         (r"^(altitude|range)$", "m"),
