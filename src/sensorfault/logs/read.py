@@ -19,6 +19,7 @@ from sensorfault.logs.vehicle import VehicleFile
 GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def read(
     path: Where,
     vehicle: str | Path | VehicleFile | None = None,

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from sensorfault.logs.guess.columns import NO_SENSOR, OTHER_TIME, QUALITY
 from sensorfault.logs.guess.look import Guess, look_at
 from sensorfault.logs.guess.naming import joined, short_names, stem_of
@@ -15,6 +17,7 @@ _EXPECTED = (OTHER_TIME, QUALITY, NO_SENSOR)
 _RAW = "_uncalibrated"
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> VehicleFile:
     """Describe a log from its names and values.
 

@@ -1,17 +1,19 @@
 """Files packed by gzip: unpacked beside nothing of the user's, read as what they are, called by their own name."""
 
-import gzip
-import shutil
 import tempfile
 import zlib
 from collections.abc import Callable
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 from sensorfault.logs.readers.source import Damage, Tables, told
 from sensorfault.logs.table import LogError
 
 SUFFIX = ".gz"
+_CHUNK = 1 << 16
+_GZIP = 31  # zlib's number for 32 kB of window and gzip's own head and tail
 
 
 def is_packed(path: Path) -> bool:
@@ -29,11 +31,9 @@ def head_of(path: Path, size: int) -> bytes:
     if not is_packed(path):
         with path.open("rb") as file:
             return file.read(size)
-    try:
-        with gzip.open(path) as file:
-            return file.read(size)
-    except (EOFError, zlib.error, gzip.BadGzipFile):
-        return b""
+    plain = BytesIO()
+    _unpack(path, plain, size)
+    return plain.getvalue()[:size]
 
 
 def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
@@ -46,19 +46,45 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
     with tempfile.TemporaryDirectory(prefix="sensorfault-") as folder:
         file = Path(folder) / inner(path).name
         with file.open("wb") as plain:
-            try:
-                with gzip.open(path) as packed:
-                    shutil.copyfileobj(packed, plain, 1 << 20)
-            except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-                if not plain.tell():
-                    raise LogError(
-                        f"{path}: this cannot be unpacked ({error}); pack the log again with gzip."
-                    ) from None
-                reached = f"byte {plain.tell()} of what is packed"
-                damage.append(Damage("the packed file is damaged or breaks off", reached))
+            whole = _unpack(path, plain)
+            if not plain.tell():
+                raise LogError(f"{path}: nothing in this file can be unpacked; pack the log again with gzip.")
+            if not whole:
+                damage.append(Damage("the packed file is damaged or breaks off", f"unpacked byte {plain.tell()}"))
         try:
             tables = read(file)
         except LogError as error:
             raise LogError(str(error).replace(str(file), str(path))) from None
     own = {name: replace(source, path=path) for name, source in tables.items()}
     return told(own, (), damage)
+
+
+def _unpack(path: Path, plain: BinaryIO, most: int | None = None) -> bool:
+    """Unpack as far as it goes, or until `most` bytes; whether all of it is sound.
+
+    Python's own gzip gives nothing of the block in which the damage is.
+    """
+    with path.open("rb") as packed:
+        unpacker = zlib.decompressobj(_GZIP)
+        while chunk := packed.read(_CHUNK):
+            while chunk:
+                before = unpacker.copy()
+                try:
+                    plain.write(unpacker.decompress(chunk))
+                except zlib.error:
+                    _byte_by_byte(before, chunk, plain)
+                    return False
+                chunk = unpacker.unused_data if unpacker.eof else b""
+                if chunk:  # another file is packed behind it
+                    unpacker = zlib.decompressobj(_GZIP)
+            if most is not None and plain.tell() >= most:
+                return True
+        return unpacker.eof
+
+
+def _byte_by_byte(unpacker: "zlib._Decompress", chunk: bytes, plain: BinaryIO) -> None:
+    for i in range(len(chunk)):
+        try:
+            plain.write(unpacker.decompress(chunk[i : i + 1]))
+        except zlib.error:
+            return

@@ -2,18 +2,18 @@
 
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
+from sensorfault.logs.readers.mat_apart import load
+from sensorfault.logs.readers.mat_load import Vectors, reason
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
 
 _OWN = "variables"  # the table of vectors that stand in no structure
-_NUMBERS = "biuf"  # numpy's letters for truths, whole numbers and floats
 
 
 def read_mat(path: Path, ask: Ask) -> Tables:
@@ -22,35 +22,28 @@ def read_mat(path: Path, ask: Ask) -> Tables:
     Raises:
         LogError: not a whole MATLAB file, one of version 7.3 (HDF5), or no vectors of numbers in it.
     """
-    found = _variables(path)
-    structures = {name: vars(one) for name, one in found.items() if hasattr(one, "_fieldnames")}
-    structures[_OWN] = {name: one for name, one in found.items() if name not in structures}
-    tables = {name: _table(path, fields) for name, fields in structures.items()}
+    tables = {name or _OWN: _table(path, vectors) for name, vectors in _structures(path).items()}
     whole = {name: table for name, table in tables.items() if table is not None}
     if not whole:
         raise LogError(f"{path}: no vectors of numbers of one length; save a structure of them, with one for the time.")
     return whole
 
 
-def _variables(path: Path) -> dict[str, Any]:
-    from scipy.io import loadmat  # lazily: half a second that only this format needs
-
+def _structures(path: Path) -> Vectors:
     try:
-        found = loadmat(path, squeeze_me=True, struct_as_record=False)
+        return load(path)
     except NotImplementedError:
         raise LogError(f"{path}: this is MATLAB's version 7.3; save it again with `save(..., '-v7')`.") from None
     except Exception as error:  # a damaged file fails in as many ways as it can be damaged
         if isinstance(error, OSError) and error.errno is not None:
             raise  # no fault of the content
-        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
-        raise LogError(f"{path}: not a whole MATLAB file ({reason}); save it again with `save(..., '-v7')`.") from None
-    return {name: one for name, one in found.items() if not name.startswith("__")}
+        raise LogError(
+            f"{path}: not a whole MATLAB file ({reason(error)}); save it again with `save(..., '-v7')`."
+        ) from None
 
 
-def _table(path: Path, fields: dict[str, Any]) -> Source | None:
+def _table(path: Path, vectors: dict[str, np.ndarray]) -> Source | None:
     """The vectors of the usual length as columns."""
-    vectors = {name: np.asarray(one) for name, one in fields.items() if not name.startswith("_")}
-    vectors = {name: one for name, one in vectors.items() if one.ndim == 1 and one.dtype.kind in _NUMBERS}
     lengths = Counter(len(one) for one in vectors.values() if len(one) > 1)
     if not lengths:
         return None

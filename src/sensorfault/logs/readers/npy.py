@@ -94,8 +94,10 @@ def _array(path: Path) -> np.ndarray:
     """The array in a file, mapped, not read."""
     try:
         array: np.ndarray = np.lib.format.open_memmap(path, mode="r")  # refuses objects: nothing is unpickled
-    except ValueError as error:
-        reason = str(error).splitlines()[0].rstrip(".")
+    except Exception as error:  # a damaged header fails in as many ways as it can be damaged
+        if isinstance(error, OSError) and error.errno is not None:
+            raise  # no fault of the content
+        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
         raise LogError(f"{path}: not a whole array of numbers ({reason}); save it again with numpy.save.") from None
     if array.dtype.kind not in _NUMBERS or not array.ndim or not array.size:
         raise LogError(f"{path}: no table of numbers; save one with numpy.save: rows, or rows and columns.")

@@ -29,6 +29,7 @@ def broadcast_beside(path: Path, time: float) -> tuple[Broadcast | None, list[st
         if np.abs(told.times - time).min() < _REACH_S:
             found = found.with_more(told)
             used.append(file.name)
+            notes += [one.sentence(file) for one in told.damage]
     if not used:
         return None, [*notes, f"{path.name}: {NONE}"]
     notes.append(f"{path.name}: the satellites' places are from {' and '.join(used)}.")

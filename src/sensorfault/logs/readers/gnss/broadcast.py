@@ -1,12 +1,13 @@
 """What satellites broadcast about themselves, gathered: where each was at any time, and what its clock showed."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float
 
+from sensorfault.logs.readers.source import Damage
 from sensorfault.numerics.gnss import glonass, kepler
 from sensorfault.numerics.gnss.glonass import GlonassEphemeris
 from sensorfault.numerics.gnss.kepler import Ephemeris
@@ -14,6 +15,8 @@ from sensorfault.numerics.gnss.kepler import Ephemeris
 E = TypeVar("E", bound=Ephemeris | GlonassEphemeris)
 # How far from its reference time an ephemeris is good [s].
 _GOOD_S: dict[type, float] = {Ephemeris: 7_260.0, GlonassEphemeris: 1_800.0}
+_SQRT_A = (4_000.0, 7_500.0)  # [√m]
+_STATE_M = (2.0e7, 3.0e7)  # from the centre of the earth
 _AGREE_M = 2_000.0  # two of one satellite, each in reach of the other's time
 
 
@@ -33,6 +36,7 @@ class Broadcast:
     glonass: Mapping[str, GlonassEphemeris] = field(default_factory=dict)
     klobuchar: Float[np.ndarray, "8"] | None = None
     odd: tuple[str, ...] = ()  # satellites of which an ephemeris was left out
+    damage: tuple[Damage, ...] = ()
 
     @property
     def satellites(self) -> tuple[str, ...]:
@@ -71,10 +75,32 @@ def gathered(
     orbits: Mapping[str, list[Ephemeris]], states: Mapping[str, list[GlonassEphemeris]], klobuchar: np.ndarray | None
 ) -> Broadcast:
     """Each satellite's ephemerides by their reference times; those that contradict the others are left out."""
-    kept_orbits = {name: _stacked(each) for name, each in orbits.items()}
-    kept_states = {name: _stacked(each) for name, each in states.items()}
+    kept_orbits = {name: _stacked(each) for name, each in _sane(orbits, _is_orbit)}
+    kept_states = {name: _stacked(each) for name, each in _sane(states, _is_state)}
     odd = (*_without_odd(kept_orbits), *_without_odd(kept_states))
     return Broadcast(kept_orbits, kept_states, klobuchar, odd)
+
+
+def _sane(each: Mapping[str, list[E]], is_sane: Callable[[E], bool]) -> list[tuple[str, list[E]]]:
+    """The satellites that have any, with those that are."""
+    kept = ((name, [one for one in ones if is_sane(one)]) for name, ones in each.items())
+    return [(name, ones) for name, ones in kept if ones]
+
+
+def _is_orbit(one: Ephemeris) -> bool:
+    """Whether damage has left an orbit round the earth, of the size that navigation satellites have."""
+    finite = bool(np.isfinite(np.array(one, float)).all())
+    return finite and _SQRT_A[0] < one.sqrt_a < _SQRT_A[1] and 0 <= one.eccentricity < 0.5 and _is_date(one.toe)
+
+
+def _is_state(one: GlonassEphemeris) -> bool:
+    """Whether damage has left a satellite where those of GLONASS are."""
+    finite = all(np.isfinite(np.array(value, float)).all() for value in one)
+    return finite and _STATE_M[0] < float(np.linalg.norm(one.start)) < _STATE_M[1] and _is_date(one.toe)
+
+
+def _is_date(time: float) -> bool:
+    return 0 <= time < 100 * 365.25 * 86_400
 
 
 def _without_odd(kept: dict[str, E]) -> list[str]:
@@ -82,7 +108,10 @@ def _without_odd(kept: dict[str, E]) -> list[str]:
     sound = {name: _sound(each) for name, each in kept.items()}
     odd = [name for name, good in sound.items() if not good.all()]
     for name in odd:
-        kept[name] = _rows(kept[name], np.flatnonzero(sound[name]))
+        if sound[name].any():
+            kept[name] = _rows(kept[name], np.flatnonzero(sound[name]))
+        else:
+            del kept[name]
     return odd
 
 

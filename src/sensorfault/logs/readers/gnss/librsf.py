@@ -4,6 +4,7 @@ Source: smartLoc's readme (TU Chemnitz, 2022). Its pseudoranges are corrected fo
 not for the earth's turn.
 """
 
+import math
 from collections import Counter, defaultdict
 from pathlib import Path
 
@@ -47,7 +48,7 @@ def read_librsf(path: Path, ask: Ask) -> Tables:
             found = [float(cell) for cell in cells]
         except ValueError:
             found = []
-        if len(found) < (10 if word == _RANGES else 1 + len(_WORDS[word])):
+        if not all(map(math.isfinite, found)) or len(found) < (10 if word == _RANGES else 1 + len(_WORDS[word])):
             spoilt.append(number)
         else:
             rows[word].append(found)

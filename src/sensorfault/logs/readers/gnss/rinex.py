@@ -54,7 +54,11 @@ def read_header(path: Path, lines: list[str]) -> Header:
         header = Header(float(first[:9]), first[20:21], 0, {}, None)
     except ValueError:
         header = Header(0.0, "", 0, {}, None)
-    if not first[_LABEL:].startswith("RINEX VERSION") or header.kind not in _KINDS or not 2 <= header.version < 4:
+    if (
+        not first[_LABEL:].startswith("RINEX VERSION")
+        or header.kind not in tuple(_KINDS)
+        or not 2 <= header.version < 4
+    ):
         raise LogError(f"{path}: this is no RINEX file of version 2 or 3 by its first line; convert the log again.")
     alpha, beta, system = np.zeros(4), np.zeros(4), ""
     codes: dict[str, list[str]] = {}

@@ -5,6 +5,7 @@ Source: RINEX 2.11 (Gurtner, 2007), tables A3, A4, A10; RINEX 3.04 (IGS/RTCM, 20
 
 from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from sensorfault.logs.readers.gnss.broadcast import Broadcast, gathered
 from sensorfault.logs.readers.gnss.observed import Observed
 from sensorfault.logs.readers.gnss.rinex import Header, calendar_s, lines_of, read_header
 from sensorfault.logs.readers.gps_time import GPS_EPOCH_S, leap_seconds
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.source import Damage, Source
 from sensorfault.logs.table import LogError
 from sensorfault.numerics.gnss.constants import EARTH_MU, EARTH_RATE, WEEK_S
 from sensorfault.numerics.gnss.glonass import GlonassEphemeris
@@ -40,15 +41,20 @@ def read_nav(path: Path) -> Broadcast:
         )
     orbits: dict[str, list[Ephemeris]] = defaultdict(list)
     states: dict[str, list[GlonassEphemeris]] = defaultdict(list)
-    for satellite, epoch, fields in _records(lines[header.lines :], header):
+    lost: list[int] = []
+    for satellite, epoch, fields in _records(lines, header, lost):
         if satellite[0] == "R":
             if fields[6] == 0:
                 states[satellite].append(_state(epoch, fields))
         elif satellite[0] in EARTH_MU and satellite not in _GEOSTATIONARY and fields[24] == 0:
             orbits[satellite].append(_orbit(satellite[0], epoch, fields))
-    if not orbits and not states:
+    found = gathered(orbits, states, header.klobuchar)
+    if not found.satellites:
         raise LogError(f"{path}: no ephemeris of a healthy satellite below its header; take the file of another day.")
-    return gathered(orbits, states, header.klobuchar)
+    if lost:
+        what = f"{len(lost)} ephemerides cannot be read, the first"
+        found = replace(found, damage=(Damage(what, f"line {lost[0]}", "all the others were read"),))
+    return found
 
 
 def read_places(path: Path) -> Source:
@@ -58,32 +64,37 @@ def read_places(path: Path) -> Source:
         LogError: no navigation file, or no ephemeris in it.
     """
     broadcast = read_nav(path)
-    usual = float(np.median(broadcast.times))  # files of a day hold ephemerides of another week now and then
+    usual = np.sort(broadcast.times)[len(broadcast.times) // 2]  # a file of a day may hold another week's
     near = broadcast.times[np.abs(broadcast.times - usual) <= _DAY_S]
     times = np.arange(near.min(), near.max() + 1, _EVERY_S)
     each = [broadcast.at(name, times) for name in broadcast.satellites]
     places = np.stack([one.position for one in each], axis=1)
     value = {f"{axis}_m": places[..., k] for k, axis in enumerate("xyz")}
     value["clock_s"] = np.stack([one.clock for one in each], axis=1)
-    return Observed(times, broadcast.satellites, value).table(path)
+    return Observed(times, broadcast.satellites, value).table(path, damage=broadcast.damage)
 
 
-def _records(lines: list[str], header: Header) -> Iterator[tuple[str, float, list[float]]]:
-    """Satellite, its epoch as if UTC [s since 1970] and the numbers of each record that is whole."""
+def _records(lines: list[str], header: Header, lost: list[int]) -> Iterator[tuple[str, float, list[float]]]:
+    """Satellite, its epoch as if UTC [s since 1970] and the numbers of each record; `lost`: lines of those damaged."""
     old = header.version < 3
-    at, head = 0, (22 if old else 23)
-    while at < len(lines):
-        name = (("R" if header.kind == "G" else "G") + lines[at][:2] if old else lines[at][:3]).replace(" ", "0")
+    head, start = (22, slice(0, 2)) if old else (23, slice(0, 3))
+    begins = [i for i in range(header.lines, len(lines)) if lines[i][start].strip()]
+    for at, end in zip(begins, [*begins[1:], len(lines)], strict=False):
+        letter = ("R" if header.kind == "G" else "G") if old else ""
+        name = (letter + lines[at][start]).replace(" ", "0")
         count = _LINES.get(name[0], 8) + (name[0] == "R" and header.version >= 3.05)
-        record, at = lines[at : at + count], at + count
+        record = lines[at : min(at + count, end)]
         try:
-            epoch = calendar_s(record[0][2 if old else 3 : head].split())
+            epoch = calendar_s(record[0][start.stop : head].split())
             numbers = [_number(record[0], head + _WIDTH * i) for i in range(3)]
             for line in record[1:]:
                 numbers += [_number(line, head - _WIDTH + _WIDTH * i) for i in range(4)]
         except (ValueError, IndexError):
+            lost.append(at + 1)
             continue
-        if len(record) == count and len(name) == 3:
+        if len(record) < count:
+            lost.append(at + 1)
+        else:
             yield name, epoch, numbers
 
 

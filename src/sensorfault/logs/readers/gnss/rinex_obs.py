@@ -110,6 +110,13 @@ def _columns(header: Header, system: str) -> dict[str, int]:
     return {name: 3 + _WIDTH * codes.index(code) for name, code in own.items() if code in codes}
 
 
+def _flag_and_count(flag: str, count: str) -> tuple[int, int]:
+    """What an epoch's line says of the lines behind it."""
+    if int(count) < 0:
+        raise ValueError("no count")
+    return int(flag), int(count)
+
+
 def _epochs_3(lines: list[str], header: Header, damage: list[Damage]) -> Iterator[_Epoch]:
     at = header.lines
     while at < len(lines):
@@ -117,7 +124,7 @@ def _epochs_3(lines: list[str], header: Header, damage: list[Damage]) -> Iterato
         try:
             if not head.startswith(">"):
                 raise ValueError("no epoch")
-            flag, count = int(head[29:32]), int(head[32:35])
+            flag, count = _flag_and_count(head[29:32], head[32:35])
             time = calendar_s(head[1:29].split()) - GPS_EPOCH_S + header.behind_s if flag < 2 else 0.0
         except (ValueError, IndexError):
             damage.append(Damage("no epoch can be read", f"line {at + 1}", "the search went on at the next"))
@@ -137,7 +144,7 @@ def _epochs_2(lines: list[str], header: Header, damage: list[Damage]) -> Iterato
     while at < len(lines):
         head = lines[at]
         try:
-            flag, count = int(head[26:29]), int(head[29:32])
+            flag, count = _flag_and_count(head[26:29], head[29:32])
             time = calendar_s(head[:26].split()) - GPS_EPOCH_S + header.behind_s if flag < 2 else 0.0
         except (ValueError, IndexError):
             damage.append(Damage("no epoch can be read", f"line {at + 1}", "what came before was read"))
@@ -145,7 +152,7 @@ def _epochs_2(lines: list[str], header: Header, damage: list[Damage]) -> Iterato
         if flag > 1:
             at += 1 + count
             continue
-        heads = -(-count // 12)
+        heads = max(1, -(-count // 12))
         end = at + heads + count * each
         if end > len(lines):
             damage.append(Damage("the file breaks off", f"line {len(lines)}"))

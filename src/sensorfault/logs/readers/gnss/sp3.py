@@ -60,7 +60,7 @@ def read_orbits(path: Path) -> Orbits:
                 rows.append({})
             elif line.startswith("P") and rows:
                 rows[-1][line[1:4].replace(" ", "0")] = [float(line[4 + 14 * i : 18 + 14 * i]) for i in range(4)]
-        except ValueError:
+        except (ValueError, IndexError):
             damage.append(Damage("a line cannot be read", f"line {number}", "it was left out"))
             if line.startswith("* "):
                 break
