@@ -2,7 +2,6 @@
 
 import gzip
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -114,10 +113,6 @@ def _bytes(name: str, content: Callable[[], bytes]) -> Callable[[Path], Path]:
     return write
 
 
-def _bag2(folder: Path) -> Path:
-    return written_ros.bag2(folder / "drive")
-
-
 SMALL: dict[str, Callable[[Path], Path]] = {
     "text table": _csv,
     "gzip": _gzipped,
@@ -128,13 +123,15 @@ SMALL: dict[str, Callable[[Path], Path]] = {
     "libRSF measurements": _text("car_Input.txt", texts.librsf),
     "smartLoc measurements": _text("RXM-RAWX.csv", texts.smartloc),
     "UTIAS measurements": _text("Robot1_Measurement.dat", texts.utias),
-    "PX4 ULog": _bytes("flight.ulg", partial(written_ulog.flight, 1.0)),
-    "ArduPilot DataFlash": _bytes("flight.bin", partial(written_dataflash.flight, seconds=1.0)),
-    "ArduPilot DataFlash text": _text("flight.log", partial(written_ardupilot.text, 1.0)),
-    "MAVLink telemetry": _bytes("flight.tlog", partial(written_ardupilot.tlog, 2.0)),
-    "ROS 1 bag": lambda folder: written_ros.bag1(folder / "drive.bag"),
-    "ROS 2 bag": _bag2,
-    "MCAP": lambda folder: written_ros.mcap(folder / "drive.mcap"),
+    "PX4 ULog": _bytes("flight.ulg", lambda: written_ulog.flight(1.0)),
+    "ArduPilot DataFlash": _bytes("flight.bin", lambda: written_dataflash.flight(seconds=2.0)),
+    "ArduPilot DataFlash text": _text("flight.log", lambda: written_ardupilot.text(1.0)),
+    "MAVLink telemetry": _bytes("flight.tlog", lambda: written_ardupilot.tlog(3.0)),
+    "ROS 1 bag": lambda folder: written_ros.bag1(folder / "drive.bag", seconds=0.5),
+    "ROS 1 bag, in lz4": lambda folder: written_ros.bag1(folder / "drive.bag", compress=True, seconds=0.5),
+    "ROS 2 bag": lambda folder: written_ros.bag2(folder / "drive", seconds=0.5),
+    "MCAP": lambda folder: written_ros.bag2(folder / "drive", mcap=True, seconds=0.5),
+    "MCAP, of JSON": lambda folder: written_ros.mcap(folder / "drive.mcap"),
     "u-blox": ubx,
     "NMEA": nmea,
     "RINEX observations": _text("site.obs", texts.rinex_3),

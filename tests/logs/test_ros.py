@@ -29,17 +29,20 @@ def test_the_usual_messages_and_one_of_its_own(tmp_path: Path, way: str) -> None
     assert log.duration_s == pytest.approx(3.98, abs=1e-6)
     assert log.epoch_s == pytest.approx(START_NS / 1e9, abs=1e-3)
     time = np.arange(200) / 50
-    np.testing.assert_allclose(log.value[:, log.index("attitude.roll")], 0.2 * time, atol=1e-9)
+    np.testing.assert_allclose(log.value[:, log.index("imu_data_attitude.roll")], 0.2 * time, atol=1e-9)
     assert log.value[:, log.index("accelerometer.z")].mean() == pytest.approx(9.8, abs=0.05)
     assert log.value[0, log.index("gnss.latitude")] == pytest.approx(np.deg2rad(48))
     assert log.value[0, log.index("barometer.pressure")] == 95_000
     at = log.fresh[:, log.index("gnss.latitude")]
     np.testing.assert_array_equal(np.flatnonzero(at), np.arange(0, 200, 10))
     units = {channel.path: channel.unit for channel in log.channels}
-    assert (units["gyro.x"], units["accelerometer.x"], units["barometer.pressure"]) == ("rad/s", "m/s^2", "Pa")
+    assert (units["imu_data_gyro.x"], units["accelerometer.x"], units["barometer.pressure"]) == ("rad/s", "m/s^2", "Pa")
+    assert log.value[180, log.index("twist.x")] == pytest.approx(1 + 3.6)
+    assert units["twist.x"] == "m/s"
+    assert units["position.position_3"] == "rad"
     said = " ".join(vehicle.notes)
     assert "topics without numbers left out: /chatter" in said
-    assert "fields that are no measurements left out: /own.scan (40 numbers)" in said
+    assert "fields that are no measurements left out: /own.scan (40 numbers), " in said
     assert "commands, no measurements, so left out: /cmd_vel" in said
     assert log.damage == ()
 

@@ -1,4 +1,4 @@
-"""DataFlash logs, written byte by byte: shares no code with the reader."""
+"""A DataFlash log, written byte by byte."""
 
 import struct
 

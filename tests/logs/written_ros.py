@@ -16,14 +16,14 @@ OWN = "float64 wheel\nfloat32[2] pair\nfloat64[] scan\nstring name\n"
 SECONDS = 4.0
 
 
-def messages(store: Any) -> list[tuple[str, str, int, Any]]:
+def messages(store: Any, seconds: float) -> list[tuple[str, str, int, Any]]:
     """Topic, type, time [ns] and message: IMU at 50 Hz, receiver at 5 Hz, and what else a bag has."""
     t = store.types
     vector, quaternion = t["geometry_msgs/msg/Vector3"], t["geometry_msgs/msg/Quaternion"]
     random = np.random.default_rng(1)
     own = "own_msgs/msg/Own"
     written = []
-    for k in range(round(50 * SECONDS)):
+    for k in range(round(50 * seconds)):
         ns, s = START_NS + 20_000_000 * k, k / 50
         stamp = t["builtin_interfaces/msg/Time"](sec=ns // 10**9, nanosec=ns % 10**9)
         names = t["std_msgs/msg/Header"].__dataclass_fields__
@@ -59,6 +59,19 @@ def messages(store: Any) -> list[tuple[str, str, int, Any]]:
             written.append(("/pressure", "sensor_msgs/msg/FluidPressure", late, pressure))
             twist = t["geometry_msgs/msg/Twist"](linear=vector(s, 0.0, 0.0), angular=vector(0.0, 0.0, np.sin(s)))
             written.append(("/cmd_vel", "geometry_msgs/msg/Twist", late, twist))
+            joints = t["sensor_msgs/msg/JointState"](
+                header=head, name=["a"] * 4, position=np.arange(4) + s, velocity=np.arange(4) * s, effort=np.zeros(4)
+            )
+            written.append(("/joints", "sensor_msgs/msg/JointState", late, joints))
+            pose = t["geometry_msgs/msg/Pose"](t["geometry_msgs/msg/Point"](s, 2 * s, 0.0), turn)
+            turning = t["geometry_msgs/msg/Twist"](vector(1 + s, 0.0, 0.0), vector(0.0, 0.0, np.sin(s)))
+            odometry = t["nav_msgs/msg/Odometry"](
+                header=head,
+                child_frame_id="base",
+                pose=t["geometry_msgs/msg/PoseWithCovariance"](pose, np.zeros(36)),
+                twist=t["geometry_msgs/msg/TwistWithCovariance"](turning, np.zeros(36)),
+            )
+            written.append(("/odom", "nav_msgs/msg/Odometry", late, odometry))
             text = t["std_msgs/msg/String"](data="hello")
             written.append(("/chatter", "std_msgs/msg/String", late, text))
     return written
@@ -70,7 +83,7 @@ def store_of(ros: int) -> Any:
     return store
 
 
-def bag1(path: Path, compress: bool = False) -> Path:
+def bag1(path: Path, compress: bool = False, seconds: float = SECONDS) -> Path:
     store = store_of(1)
     bag = Writer1(path)
     bag.chunk_threshold = 20_000
@@ -78,19 +91,19 @@ def bag1(path: Path, compress: bool = False) -> Path:
         bag.set_compression(Writer1.CompressionFormat.LZ4)
     with bag as writer:
         opened: dict[str, Any] = {}
-        for topic, kind, ns, message in messages(store):
+        for topic, kind, ns, message in messages(store, seconds):
             if topic not in opened:
                 opened[topic] = writer.add_connection(topic, kind, typestore=store)
             writer.write(opened[topic], ns, store.serialize_ros1(message, kind))
     return path
 
 
-def bag2(folder: Path, mcap: bool = False) -> Path:
+def bag2(folder: Path, mcap: bool = False, seconds: float = SECONDS) -> Path:
     """A bag's folder; its one file is `folder/NAME.db3` or `folder/NAME.mcap`."""
     store = store_of(2)
     with Writer2(folder, version=9, storage_plugin=StoragePlugin.MCAP if mcap else StoragePlugin.SQLITE3) as writer:
         opened: dict[str, Any] = {}
-        for topic, kind, ns, message in messages(store):
+        for topic, kind, ns, message in messages(store, seconds):
             if topic not in opened:
                 opened[topic] = writer.add_connection(topic, kind, typestore=store)
             writer.write(opened[topic], ns, store.serialize_cdr(message, kind))

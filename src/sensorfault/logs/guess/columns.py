@@ -44,7 +44,9 @@ def measurements(
     for name in source.frame.columns:
         if name == time:
             continue
-        meaning = read_name(name, source.units.get(name, "")) if fields is None else fields.get(name)
+        meaning = (
+            read_name(name, source.units.get(name, ""), source.frame.columns) if fields is None else fields.get(name)
+        )
         if meaning is None:
             left_out.append((name, NO_SENSOR))
         elif meaning.kind == "time":

@@ -31,6 +31,11 @@ class Guess:
     sensors: list[SensorEntry]
 
     @property
+    def called(self) -> str:
+        """What a sentence calls it: its file, and its table where that holds several."""
+        return f"{self.path.name} ({self.file.table})" if self.file.table else self.path.name
+
+    @property
     def stem(self) -> str:
         """What it is called: its table, or its file where that holds one."""
         return self.file.table or stem_of(self.path)

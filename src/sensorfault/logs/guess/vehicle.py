@@ -91,7 +91,7 @@ def _missed(guesses: list[Guess]) -> list[str]:
             f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY, NO_SENSOR)
         ]
         if out:
-            said.append(f"{one.path.name}: columns left out as no measurements: {', '.join(out)}.")
+            said.append(f"{one.called}: columns left out as no measurements: {', '.join(out)}.")
     return said
 
 

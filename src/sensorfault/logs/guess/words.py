@@ -1,6 +1,7 @@
 """What a column's name says: kind of sensor, axis, unit."""
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from sensorfault.logs.units import known, spelled
@@ -56,6 +57,8 @@ _CHANNEL = {
 _STEM = {"bar": "baro"}  # DataFlash's BarAlt
 _GYRO_AXIS = {"roll": "x", "pitch": "y", "yaw": "z"}
 
+_OF_JOINTS = ("rad", "Nm")  # units of no axes in space, but of an arm's joints
+
 # Units written as the end of a name.
 _UNIT_ENDINGS = (
     ("m_s2", "m/s^2"), ("m_s_2", "m/s^2"), ("mps2", "m/s^2"), ("rad_s", "rad/s"), ("radps", "rad/s"),
@@ -77,13 +80,13 @@ class Meaning:
     unit: str
 
 
-def read_name(column: str, unit: str = "") -> Meaning:
+def read_name(column: str, unit: str = "", others: Collection[str] = ()) -> Meaning:
     """What a column's name says; `unit`: what its format says.
 
-    An array's first three elements may be its axes: `gyro_rad[0]` is x.
+    An array's elements may be axes, `gyro_rad[0]` is x, if it has no more than three among the `others`.
     """
     element = re.fullmatch(r"(.+)\[([012])\]", column)
-    if element:
+    if element and f"{element[1]}[3]" not in others and unit not in _OF_JOINTS:
         plain, ending = _without_unit("_".join(_tokens(element[1])))
         axis = _read(f"{plain}_{'xyz'[int(element[2])]}", unit or ending)
         if axis.kind not in ("", "quality", "quaternion", "time"):

@@ -42,9 +42,9 @@ def _messages(path: Path, ask: Ask) -> tuple[dict[str, list[str]], dict[str, lis
     with TellingFile(path, ask.tell) as file:
         for number, line in enumerate(file, 1):
             kind, *cells = (cell.strip() for cell in line.decode("utf-8", "replace").split(","))
-            if kind == "FMT" and len(cells) > 4 and cells[2] not in rows and len(set(cells[4:])) == len(cells[4:]):
+            if kind == "FMT" and _describes(cells, names):
                 names[cells[2]] = cells[4:]
-            elif kind in names and len(cells) >= len(names[kind]) and line.endswith(b"\n"):
+            elif kind in names and kind != "FMT" and len(cells) >= len(names[kind]) and line.endswith(b"\n"):
                 rows[kind].append(cells[: len(names[kind])])
             elif line.strip() and (kind not in names or line.endswith(b"\n")):
                 odd, first_odd = odd + 1, first_odd or number
@@ -54,6 +54,12 @@ def _messages(path: Path, ask: Ask) -> tuple[dict[str, list[str]], dict[str, lis
     if line and not line.endswith(b"\n"):
         damage.append(Damage("the file breaks off", f"line {number}"))
     return names, rows, damage
+
+
+def _describes(cells: list[str], names: dict[str, list[str]]) -> bool:
+    """Whether an FMT line describes a kind of message, not otherwise than a line before."""
+    own = cells[4:]
+    return len(own) == len(set(own)) > 0 and names.get(cells[2], own) == own
 
 
 def _frame(names: list[str], cells: list[list[str]]) -> pl.DataFrame:

@@ -14,7 +14,7 @@ from sensorfault.logs.readers.telling import TellingFile
 from sensorfault.logs.table import LogError
 
 _MAGIC = b"\x89MCAP0\r\n"
-_BROKEN = (struct.error, ValueError, MemoryError)  # what mcap raises beside its own
+_BROKEN = (struct.error, ValueError, OverflowError, MemoryError)  # what mcap raises beside its own
 _LARGEST = 1 << 30  # no chunk is larger, and no record that is larger than its file
 
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 Decoder = Callable[[bytes], Any]
@@ -16,6 +16,9 @@ _UNITS = tuple(
         (r"(^|\.)linear\.[xyz]$", "m/s"),
         (r"(^|\.)position\.[xyz]$", "m"),
         (r"(^|\.)magnetic_field\.[xyz]$", "T"),
+        (r"^position\[\d+\]$", "rad"),  # of a JointState
+        (r"^velocity\[\d+\]$", "rad/s"),
+        (r"^effort\[\d+\]$", "Nm"),
         (r"^fluid_pressure$", "Pa"),
         (r"^(latitude|longitude)$", "deg"),
         (r"^(altitude|range)$", "m"),
@@ -30,6 +33,7 @@ def si_unit_of(kind: str, field: str) -> str:
     return next((unit for pattern, unit in _UNITS if pattern.search(field)), "")
 
 
+@lru_cache(maxsize=256)
 def decoder(kind: str, definition: str, ros: int, idl: bool = False) -> Decoder | None:
     """What decodes messages of a type; None if nobody knows the type.
 
