@@ -6,6 +6,8 @@ from fnmatch import fnmatchcase
 from functools import lru_cache, partial
 from pathlib import Path
 
+import numpy as np
+
 from sensorfault.logs.readers.attitude import with_attitude
 from sensorfault.logs.readers.bag1 import read_bag1
 from sensorfault.logs.readers.bag2 import first_part, read_bag2
@@ -151,6 +153,7 @@ def take_table(path: Path, tables: Tables, table: str | None) -> Source:
     raise LogError(f'{path}: {what}; write table = "..." with one of {named}.')
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def read_tables(path: Path, ask: Ask = ALL) -> Tables:
     """The tables of a file that are asked for and there; of a format with one table a file it has no name.
 

@@ -32,10 +32,12 @@ class TellingFile(io.BufferedReader):
 
     def __init__(self, path: Path, tell: Callable[[float], None]) -> None:
         super().__init__(_Raw(path, tell), _BUFFER_BYTES)
+        self._whole = path.stat().st_size
         self.short: int | None = None
 
     def read(self, size: int | None = -1, /) -> bytes:
-        data = super().read(size)
+        asks = size is not None and size > self._whole  # a damaged length must not fill the memory
+        data = super().read(self._whole if asks else size)
         if size is not None and 0 < len(data) < size:
             self.short = self.tell() - len(data)
         return data
