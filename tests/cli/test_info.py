@@ -35,6 +35,32 @@ def test_what_a_log_holds(run: Run, tmp_path: Path) -> None:
     assert "arm-kalman" in said.out
 
 
+def test_a_stock_log_from_init_to_detect(run: Run, tmp_path: Path) -> None:
+    name = "flight.ulg"
+    (tmp_path / name).write_bytes(flight(20.0))
+    assert run("init", name).code == 0
+    assert "a log of" in (tmp_path / "vehicle.toml").read_text()
+    said = run("fit", name, "--method", "pca", "--out", "model.sensorfault")
+    assert said.code == 0, said.err
+    assert "guesses" not in said.err  # vehicle.toml is taken as it is
+    assert "gyro.x" in said.err
+    assert run("detect", name, "--model", "model.sensorfault").code == 0
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("name", ["pyulog_sample/sample.ulg", "copter_jd2014/jd_200424.bin"])
+def test_a_real_stock_log_from_init_to_detect(run: Run, real_data: Path, tmp_path: Path, name: str) -> None:
+    path = tmp_path / Path(name).name
+    path.symlink_to(real_data / "uav" / name)
+    assert run("init", path).code == 0
+    said = run("fit", path, "--method", "pca", "--out", "model.sensorfault")
+    assert said.code == 0, said.err
+    assert "guesses" not in said.err
+    assert run("detect", path, "--model", "model.sensorfault").code == 0
+    told = run("info", path, "--json", "-")
+    assert "relative-conditioning" in json.loads(told.out)["applies"]
+
+
 def test_gaps_and_holds_of_a_sensor() -> None:
     rig = fitted.rig().between(end_s=20.0)
     log = replace(rig, value=rig.value.copy(), fresh=rig.fresh.copy())

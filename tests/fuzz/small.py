@@ -126,7 +126,7 @@ SMALL: dict[str, Callable[[Path], Path]] = {
     "PX4 ULog": _bytes("flight.ulg", lambda: written_ulog.flight(1.0)),
     "ArduPilot DataFlash": _bytes("flight.bin", lambda: written_dataflash.flight(seconds=2.0)),
     "ArduPilot DataFlash text": _text("flight.log", lambda: written_ardupilot.text(1.0)),
-    "MAVLink telemetry": _bytes("flight.tlog", lambda: written_ardupilot.tlog(3.0)),
+    "MAVLink telemetry": _bytes("flight.tlog", lambda: written_ardupilot.tlog(1.0)),
     "ROS 1 bag": lambda folder: written_ros.bag1(folder / "drive.bag", seconds=0.5),
     "ROS 1 bag, in lz4": lambda folder: written_ros.bag1(folder / "drive.bag", compress=True, seconds=0.5),
     "ROS 2 bag": lambda folder: written_ros.bag2(folder / "drive", seconds=0.5),

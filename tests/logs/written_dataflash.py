@@ -1,4 +1,4 @@
-"""A DataFlash log, written byte by byte."""
+"""DataFlash logs, written byte by byte: shares no code with the reader."""
 
 import struct
 

@@ -24,9 +24,8 @@ def with_attitude(source: Source) -> Source:
         return source
     w, x, y, z = (frame[name].cast(pl.Float64).to_numpy() for name in names)
     # roll = atan2(2(wx + yz), 1 - 2(x² + y²)), pitch = asin 2(wy - zx), yaw = atan2(2(wz + xy), 1 - 2(y² + z²))
-    with np.errstate(over="ignore", invalid="ignore"):  # of a damaged file
-        roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-        pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
-        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
     angles = [pl.Series(name, angle) for name, angle in zip(ANGLES, (roll, pitch, yaw), strict=True)]
     return replace(source, frame=frame.with_columns(angles))

@@ -2,7 +2,7 @@
 
 from collections import Counter, defaultdict
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 import polars as pl
@@ -56,8 +56,8 @@ def _messages(path: Path, can: Any, database: Any, ask: Ask) -> tuple[Rows, Coun
     damage: list[Damage] = []
     spoilt, read, last = 0, 0, 0.0
     try:
-        with can.LogReader(str(path)) as frames:
-            for frame in frames:
+        with _opened(path) as file:
+            for frame in (can.ASCReader if path.suffix.lower() == ".asc" else can.BLFReader)(file):
                 if frame.is_error_frame or frame.is_remote_frame:
                     continue
                 read, last = read + 1, frame.timestamp
@@ -81,6 +81,11 @@ def _messages(path: Path, can: Any, database: Any, ask: Ask) -> tuple[Rows, Coun
     if spoilt:
         damage.append(Damage(f"{counted(spoilt, 'frame')} cannot be decoded", "other places", "they were left out"))
     return rows, unknown, damage
+
+
+def _opened(path: Path) -> IO[Any]:
+    """The file; readers that fail at its head would leave it open."""
+    return path.open(encoding="utf-8", errors="replace") if path.suffix.lower() == ".asc" else path.open("rb")
 
 
 def _numbers(told_by: Any) -> dict[str, float]:

@@ -65,6 +65,9 @@ class Recording:
         )
         damage = [*dict.fromkeys(self.damage), *bad]
         if not tables and self.ask.tables is None:
-            why = [one.sentence(self.path) for one in damage[:1]] or notes[:1]
-            raise LogError(f"{self.path}: no topic with numbers in this recording{': ' + why[0] if why else '.'}")
+            if damage:
+                why = f" ({damage[0].what.rstrip(',')} at {damage[0].where}); copy it from the vehicle again"
+            else:
+                why = f"; {notes[0].rstrip('.')}" if notes else "; name one of a whole drive"
+            raise LogError(f"{self.path}: no topic with numbers in this recording{why}.")
         return told(tables, notes, damage)

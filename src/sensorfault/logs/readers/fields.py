@@ -38,7 +38,7 @@ class Fields:
                 rows.extend(part.tolist())
                 if len(part) != count:
                     raise TypeError
-        except (TypeError, AttributeError):  # not as in the first message: one by one
+        except (TypeError, AttributeError, OverflowError):  # not as in the first message: one by one
             del rows[start:]
             rows.extend(self._one_by_one(found))
 

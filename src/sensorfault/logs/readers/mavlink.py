@@ -15,7 +15,6 @@ _TIME_BYTES = 8  # [us] since 1970, the highest byte first
 _FRAMES = {0xFE: 8, 0xFD: 12}  # a packet's first byte -> its bytes beside the payload
 _SIGNED, _SIGNATURE_BYTES = 1, 13
 _AUTOPILOT = 1  # its component number
-_LATEST_US = 2**63 // 1000 - 1  # what an integer holds in nanoseconds
 _HEAD_BYTES = 3
 
 
@@ -78,7 +77,7 @@ class _Telemetry:
             self.topics.cannot(topic, "no MAVLink type known here")
         elif self.ask.wants(topic):
             received_us = int.from_bytes(packet[:_TIME_BYTES], "big")
-            self.topics.take(topic, name, min(received_us, _LATEST_US) * 1000, message.to_dict())
+            self.topics.take(topic, name, received_us * 1000, message.to_dict())
         return True
 
     def damage(self) -> list[Damage]:

@@ -6,5 +6,4 @@ import numpy as np
 def native(vector: np.ndarray) -> np.ndarray:
     """Contiguous float64, or int64 where a float might round."""
     wide = np.int64 if vector.dtype.kind in "iu" and vector.dtype.itemsize == 8 else np.float64
-    with np.errstate(invalid="ignore"):  # a float of a damaged file may be a NaN that objects to being copied
-        return np.ascontiguousarray(vector, dtype=wide)
+    return np.ascontiguousarray(vector, dtype=wide)

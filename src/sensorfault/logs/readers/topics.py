@@ -17,6 +17,7 @@ RECEIVED, STAMP = "received_time", "header.stamp"
 _APART_S = 3600.0  # stamps so far from the recording's clock are of another clock
 _RISING = 0.8  # share of the stamps that must be later than the one before
 _NS = 10**9
+_LATEST_NS = 2**63 - 1  # what a column of whole numbers holds
 
 
 class Topics:
@@ -74,6 +75,7 @@ class _Topic:
             stamp_ns = stamp.sec * _NS + stamp.nanosec
         else:
             stamp_ns = _stamp_ns(message)
+        received_ns, stamp_ns = min(received_ns, _LATEST_NS), max(-_LATEST_NS, min(stamp_ns, _LATEST_NS))
         self.fields.take(message, self._rows)
         self._received.append(received_ns)
         self._stamps.append(stamp_ns)

@@ -82,9 +82,13 @@ def _load(path: Path, opened: BufferedReader, names: list[str] | None) -> "tuple
     except Exception as error:  # a damaged log fails in as many ways as it can be damaged
         if isinstance(error, OSError) and error.errno != EINVAL:  # a seek to before the file is the content's fault
             raise
-        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
+        reason = "it ends inside its definitions" if isinstance(error, OSError) else _first_line(error)
         raise LogError(f"{path}: the ULog is damaged ({reason}); copy it from the autopilot again.") from None
     return log, log.broken_at, left[-1:] != [0]
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
 
 
 def _dropouts(path: Path, log: "ULog") -> list[str]:
