@@ -9,14 +9,16 @@ import pytest
 from pyubx2 import UBXReader
 
 from fuzz import texts
-from fuzz.small import SMALL, nmea, ubx
+from fuzz.small import SMALL, _csv, nmea, ubx
 from sensorfault.logs import Log, LogError, read
+from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.formats import read_source
 from sensorfault.logs.readers.gnss.broadcast import Broadcast
 from sensorfault.logs.readers.gnss.observed import Observed
 from sensorfault.logs.readers.gnss.ranges import with_satellites
 from sensorfault.logs.readers.gnss.rinex_nav import read_nav
 from sensorfault.logs.readers.gnss.subframes import Subframes
+from sensorfault.logs.readers.gzipped import read_unpacked
 from sensorfault.logs.satellites import satellites
 from sensorfault.numerics import geodesy
 from sensorfault.numerics.gnss import atmosphere, kepler, sight
@@ -185,6 +187,12 @@ def test_a_packed_file_is_read_up_to_its_damage(tmp_path: Path) -> None:
     assert 1_000 < len(log) < 20_000
     (said,) = log.damage
     assert said.startswith("drive.csv.gz: the packed file is damaged or breaks off at unpacked byte")
+    short = gzip.compress(("time,ax,ay\n" + rows[:30_000]).encode(), mtime=0)
+    at = len(short) * 3 // 4
+    path.write_bytes(short[:at] + b"\xff" * 50 + short[at + 50 :])
+    unpacked = read_unpacked(path, lambda file: {file.read_text(errors="replace"): read_csv(_csv(tmp_path))})
+    (content,) = unpacked
+    assert content[:15_000] == ("time,ax,ay\n" + rows)[:15_000]
     path.write_bytes(b"no gzip at all")
     with pytest.raises(LogError, match="nothing in this file can be unpacked"):
         read(path)
