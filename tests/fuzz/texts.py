@@ -83,7 +83,7 @@ def rinex_2() -> str:
     )
     rows = [
         f" 25  8 24 12  0 {k:2}.0000000  0  2G07R 1\n"
-        + "".join(f"{2e7 + i + k:14.3f} 5{'':64}{-10.5 * i:14.3f}  \n{41.0:14.3f}  \n" for i in (1, 2))
+        + "".join(f"{2e7 + i + k:14.3f} 5{'':48}{-10.5 * i:14.3f}  \n{41.0:14.3f}  \n" for i in (1, 2))
         for k in range(EPOCHS)
     ]
     return head + "".join(rows)
@@ -115,7 +115,7 @@ def navigation() -> str:
             0.96,
             250,
             0.7,
-            -8e-9,
+            0,
             1e-10,
             1,
             2381,

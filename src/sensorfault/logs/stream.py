@@ -13,6 +13,7 @@ from sensorfault.logs.readers.rtklib import read_tag
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
+from sensorfault.logs.usual import usual_step
 
 _NAMED = 6  # columns listed in one sentence
 _LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
@@ -34,7 +35,7 @@ class Stream:
     @property
     def period_s(self) -> float:
         """The usual time between two rows [s]."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
 
 def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...]) -> Stream:
@@ -108,10 +109,11 @@ class _Gaps:
 def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, silent: bool) -> np.ndarray:
     """One column in SI on the kept rows, NaN where it holds no value; `silent`: it may hold none at all."""
     value = source.column(channel.column).cast(pl.Float64).to_numpy()
-    infinite, empty = np.isinf(value), np.isnan(value)
-    gaps.see("are infinite", channel.column, infinite)
-    gaps.see("are empty", channel.column, empty)
-    absent = infinite | empty
+    absent = ~np.isfinite(value)
+    if absent.any():
+        empty = np.isnan(value)
+        gaps.see("are infinite", channel.column, absent & ~empty)
+        gaps.see("are empty", channel.column, empty)
     if channel.missing is not None:
         absent |= value == channel.missing
     if absent.all() and not silent:
@@ -119,8 +121,9 @@ def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, s
             f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml, or write "
             "period_s into its sensor if that was silent."
         )
-    si: Float[np.ndarray, " T"] = np.where(absent, np.nan, to_si(value, channel.unit))[clock.rows]
-    return si
+    si: Float[np.ndarray, " T"] = to_si(value, channel.unit)  # always a new array
+    si[absent] = np.nan
+    return si if len(clock.rows) == len(si) else si[clock.rows]
 
 
 def _fresh(source: Source, sensor: SensorEntry, value: np.ndarray, clock: Clock) -> np.ndarray:

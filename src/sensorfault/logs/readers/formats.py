@@ -11,6 +11,7 @@ import numpy as np
 from sensorfault.logs.readers.attitude import with_attitude
 from sensorfault.logs.readers.bag1 import read_bag1
 from sensorfault.logs.readers.bag2 import first_part, read_bag2
+from sensorfault.logs.readers.can_bus import read_can
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
 from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
@@ -27,6 +28,7 @@ from sensorfault.logs.readers.gzipped import head_of, inner, is_packed, read_unp
 from sensorfault.logs.readers.mat import read_mat
 from sensorfault.logs.readers.mavlink import read_tlog
 from sensorfault.logs.readers.mcap import read_mcap
+from sensorfault.logs.readers.mdf import looks_mdf, read_mdf
 from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
@@ -98,6 +100,8 @@ FORMATS = (
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
     Format("ArduPilot DataFlash text", ("*.log",), _once(read_dataflash_text), looks_dataflash_text),
     Format("MAVLink telemetry", ("*.tlog",), _once(read_tlog)),
+    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), _once(read_mdf), looks_mdf),
+    Format("CAN recording", ("*.blf", "*.asc"), _once(read_can)),
     Format("u-blox", ("*.ubx",), _once(read_ubx)),
     Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
     Format("RINEX observations", ("*.obs", "*.rnx", "*.[0-9][0-9]o"), _once(_one(read_obs)), partial(looks_rinex, "O")),

@@ -1,5 +1,6 @@
 """MATLAB `.mat` files: a structure of vectors of one length is a table, and so are the vectors beside it."""
 
+import struct
 from collections import Counter
 from pathlib import Path
 
@@ -7,12 +8,14 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.mat_apart import load
-from sensorfault.logs.readers.mat_load import Vectors, reason
+from sensorfault.logs.readers.apart import load_apart, reason
+from sensorfault.logs.readers.mat_load import VERSION_7_3, load
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
 
+_HEAD, _TAG = 128, struct.Struct("<II")
+_PACKED = 15  # miCOMPRESSED
 _OWN = "variables"  # the table of vectors that stand in no structure
 
 
@@ -29,17 +32,32 @@ def read_mat(path: Path, ask: Ask) -> Tables:
     return whole
 
 
-def _structures(path: Path) -> Vectors:
+def _structures(path: Path) -> dict[str, dict[str, np.ndarray]]:
+    """What is packed (version 7, MATLAB's default) carries checksums: all else is read where damage does no harm."""
     try:
-        return load(path)
-    except NotImplementedError:
-        raise LogError(f"{path}: this is MATLAB's version 7.3; save it again with `save(..., '-v7')`.") from None
+        return (load(str(path)) if _all_packed(path) else load_apart("mat_load", path)).vectors
     except Exception as error:  # a damaged file fails in as many ways as it can be damaged
         if isinstance(error, OSError) and error.errno is not None:
             raise  # no fault of the content
-        raise LogError(
-            f"{path}: not a whole MATLAB file ({reason(error)}); save it again with `save(..., '-v7')`."
-        ) from None
+        why = reason(error)
+        what = "this is MATLAB's version 7.3" if why == VERSION_7_3 else f"not a whole MATLAB file ({why})"
+        raise LogError(f"{path}: {what}; save it again with `save(..., '-v7')`.") from None
+
+
+def _all_packed(path: Path) -> bool:
+    """Whether each variable of the file is packed."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        if file.read(_HEAD)[126:] != b"IM":
+            return False
+        at = _HEAD
+        while at + _TAG.size <= size:
+            file.seek(at)
+            kind, length = _TAG.unpack(file.read(_TAG.size))
+            if kind != _PACKED:
+                return False
+            at += _TAG.size + length
+    return at == size
 
 
 def _table(path: Path, vectors: dict[str, np.ndarray]) -> Source | None:
