@@ -67,12 +67,13 @@ def test_gaps_and_holds_of_a_sensor() -> None:
     columns = list(log.of("gyro"))
     log.fresh[200:260, columns], log.value[200:260, columns] = False, np.nan
     log.fresh[300:340, columns] = False
+    log.fresh[350:351, columns], log.fresh[360:364, columns] = False, False
     gyro = next(one for one in summarise(log) if one.name == "gyro")
-    assert gyro.gaps == 2
+    assert gyro.gaps == 3
     assert gyro.gap_at_s == pytest.approx(log.time[199])
     assert gyro.longest_gap_s == pytest.approx(log.time[260] - log.time[199])
     assert gyro.missing == pytest.approx(60 / len(log))
-    assert gyro.held == pytest.approx(40 / (len(log) - 60))
+    assert gyro.held == pytest.approx(45 / (len(log) - 60))
 
 
 @pytest.mark.parametrize("name", [name for name, recipe in METHODS.items() if not recipe.parts])

@@ -1,5 +1,6 @@
 """DataFlash logs: what is read, and each bad one as one sentence."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from logs.written_dataflash import flight, formats, message
 from sensorfault.logs import LogError, VehicleFile, guess, read
+from sensorfault.logs.readers.formats import read_tables
 
 
 def put(folder: Path, content: bytes) -> Path:
@@ -26,6 +28,31 @@ def test_every_kind_of_message_on_the_autopilots_clock(tmp_path: Path) -> None:
     np.testing.assert_array_equal(fix, np.arange(0, 500, 10))
     np.testing.assert_allclose(log.value[fix, log.index("gnss.altitude")], 300 + np.arange(50.0), rtol=1e-6)
     np.testing.assert_allclose(log.value[0, log.index("attitude.yaw")], np.pi, rtol=1e-6)
+
+
+def test_numbers_and_units_as_the_log_describes_them(tmp_path: Path) -> None:
+    """A type with factors of its own, units by UNIT, MULT and FMTU."""
+
+    def described(number: int, name: str, form: str, columns: str, size: int) -> bytes:
+        row = struct.pack("<BB4s16s64s", number, size + 3, name.encode(), form.encode(), columns.encode())
+        return b"\xa3\x95\x80" + row
+
+    def said(number: int, form: str, *values: object) -> bytes:
+        return b"\xa3\x95" + bytes([number]) + struct.pack("<" + form, *values)
+
+    content = formats() + described(140, "UNIT", "QbZ", "TimeUS,Id,Label", 73)
+    content += described(141, "MULT", "Qbd", "TimeUS,Id,Mult", 17) + described(
+        142, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds", 41
+    )
+    content += described(143, "ODD", "QLch", "TimeUS,Lat,Tilt,Acc", 16)
+    for letter, unit in (("s", b"s"), ("D", b"deglatitude"), ("d", b"deg"), ("o", b"m/s/s")):
+        content += said(140, "Qb64s", 0, ord(letter), unit)
+    content += said(141, "Qbd", 0, ord("C"), 1e-3) + said(142, "QB16s16s", 0, 143, b"sDdo", b"F--C")
+    content += b"".join(said(143, "Qihh", 1000 * k, 481234567 + k, 150 + k, k) for k in range(20))
+    table = read_tables(put(tmp_path, content))["ODD"]
+    assert table.frame["Lat"][0] == 48.1234567
+    assert table.frame["Tilt"][3] == 1.53
+    assert (table.units["Lat"], table.units["Tilt"]) == ("deg", "deg")
 
 
 def test_several_imus_are_several_tables(tmp_path: Path) -> None:

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.writer import CompressionType
 
 from logs.written_ros import START_NS, bag1, bag2, mcap
 from sensorfault.logs import Log, LogError, VehicleFile, guess, read
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask
+from sensorfault.logs.readers.topics import Topics
 
 WAYS: dict[str, Callable[[Path], Path]] = {
     "bag": lambda folder: bag1(folder / "drive.bag"),
@@ -35,11 +37,12 @@ def test_the_usual_messages_and_one_of_its_own(tmp_path: Path, way: str) -> None
     assert log.value[0, log.index("barometer.pressure")] == 95_000
     at = log.fresh[:, log.index("gnss.latitude")]
     np.testing.assert_array_equal(np.flatnonzero(at), np.arange(0, 200, 10))
+    assert "/cmd_vel" not in {file.table for file in vehicle.files}
     units = {channel.path: channel.unit for channel in log.channels}
     assert (units["imu_data_gyro.x"], units["accelerometer.x"], units["barometer.pressure"]) == ("rad/s", "m/s^2", "Pa")
     assert log.value[180, log.index("twist.x")] == pytest.approx(1 + 3.6)
     assert units["twist.x"] == "m/s"
-    assert units["position.position_3"] == "rad"
+    assert (units["position.position_3"], units["velocity.velocity_1"]) == ("rad", "rad/s")
     said = " ".join(vehicle.notes)
     assert "topics without numbers left out: /chatter" in said
     assert "fields that are no measurements left out: /own.scan (40 numbers), " in said
@@ -63,6 +66,27 @@ def test_stamps_count_and_reception_where_there_is_none(tmp_path: Path) -> None:
     assert tables["/own"].frame["received_time"][0] == START_NS + 3_000_000
 
 
+@pytest.mark.parametrize(
+    ("stamp_s", "said"),
+    [
+        (lambda k: 5.0 + k / 10, "are of another clock, -1.7e+09 s off the recording's"),
+        (lambda k: 1_700_000_000.0, "do not rise"),
+        (lambda k: 1_700_000_000.0 + k / 10, None),
+        (lambda k: 0.0, None),
+    ],
+)
+def test_two_clocks(stamp_s: Callable[[int], float], said: str | None) -> None:
+    topics = Topics(Path("drive.bag"), Ask())
+    for k in range(20):
+        second, rest = divmod(round(stamp_s(k) * 10**9), 10**9)
+        message = {"header": {"stamp": {"sec": second, "nanosec": rest}}, "x": k}
+        topics.take("/a", "Odd", START_NS + k * 10**8, message)
+    table = topics.tables()[0]["/a"]
+    believed = said is None and stamp_s(0) > 0
+    assert table.time == ("header.stamp" if believed else "received_time")
+    assert [said in note for note in table.notes] == ([] if said is None else [True])
+
+
 def test_json_in_an_mcap_beside_what_nobody_decodes(tmp_path: Path) -> None:
     log = read(mcap(tmp_path / "drive.mcap"))
     np.testing.assert_allclose(log.value[:, log.index("local_position.x")], np.arange(200) / 50)
@@ -77,6 +101,7 @@ def parts(folder: Path, content: bytes, suffix: str) -> Log:
 
 BREAKING: dict[str, Callable[[Path], Path]] = {
     **{way: WAYS[way] for way in WAYS if way != "db3"},
+    "bag of one chunk": lambda folder: bag1(folder / "drive.bag", chunk_bytes=10**9),
     "mcap of chunks in lz4": lambda folder: mcap(folder / "drive.mcap"),
 }
 
@@ -93,9 +118,14 @@ def test_a_recording_that_breaks_off_is_read_so_far_and_says_where(tmp_path: Pat
     assert 0 <= at - int(told.split("at byte ")[1].split(";")[0]) < (40_000 if "lz4" in way else 200_000)
 
 
-def test_a_chunk_with_a_wrong_checksum_is_left_out_and_said(tmp_path: Path) -> None:
-    whole = bytearray(mcap(tmp_path / "drive.mcap").read_bytes())
-    whole[len(whole) // 3] ^= 255
+@pytest.mark.parametrize("compression", [CompressionType.NONE, CompressionType.LZ4])
+def test_a_chunk_with_a_wrong_checksum_is_left_out_and_said(tmp_path: Path, compression: CompressionType) -> None:
+    whole = bytearray(mcap(tmp_path / "drive.mcap", compression=compression).read_bytes())
+    whole[
+        bytes(whole).index(b"position", len(whole) // 3) + 10
+        if compression == CompressionType.NONE
+        else len(whole) // 3
+    ] ^= 255
     log = parts(tmp_path, bytes(whole), ".mcap")
     assert 150 < len(log) < 200
     assert log.duration_s == pytest.approx(3.98)

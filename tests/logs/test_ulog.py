@@ -68,8 +68,8 @@ def test_rubbish_inside_is_passed_over_and_said(tmp_path: Path, capfd: pytest.Ca
 
 
 def test_what_the_autopilot_could_not_write_is_said(tmp_path: Path) -> None:
-    log = read(put(tmp_path, flight() + message("O", struct.pack("<H", 250))))
-    assert "flight.ulg: the autopilot could not write once, 0.25 s in all." in log.notes
+    log = read(put(tmp_path, flight() + message("O", struct.pack("<H", 250)) * 2))
+    assert "flight.ulg: the autopilot could not write 2 times, 0.5 s in all." in log.notes
 
 
 @pytest.mark.parametrize(

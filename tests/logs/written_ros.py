@@ -83,10 +83,10 @@ def store_of(ros: int) -> Any:
     return store
 
 
-def bag1(path: Path, compress: bool = False, seconds: float = SECONDS) -> Path:
+def bag1(path: Path, compress: bool = False, seconds: float = SECONDS, chunk_bytes: int = 20_000) -> Path:
     store = store_of(1)
     bag = Writer1(path)
-    bag.chunk_threshold = 20_000
+    bag.chunk_threshold = chunk_bytes
     if compress:
         bag.set_compression(Writer1.CompressionFormat.LZ4)
     with bag as writer:
@@ -110,10 +110,10 @@ def bag2(folder: Path, mcap: bool = False, seconds: float = SECONDS) -> Path:
     return folder / f"{folder.name}{'.mcap' if mcap else '.db3'}"
 
 
-def mcap(path: Path, chunk_bytes: int = 2000) -> Path:
+def mcap(path: Path, chunk_bytes: int = 2000, compression: CompressionType = CompressionType.LZ4) -> Path:
     """JSON beside what nobody here can decode, in small chunks."""
     with path.open("wb") as file:
-        writer = Writer(file, chunk_size=chunk_bytes, compression=CompressionType.LZ4)
+        writer = Writer(file, chunk_size=chunk_bytes, compression=compression)
         writer.start()
         schema = writer.register_schema("Pose", "jsonschema", b"{}")
         pose = writer.register_channel("/pose", "json", schema)
