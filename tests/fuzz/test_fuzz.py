@@ -10,14 +10,16 @@ from sensorfault.logs import read
 from sensorfault.logs.readers.formats import FORMATS, format_of
 
 FILES = 200
+FEWER = {"MDF": 50}  # damage ends its process one time in ten, and asammdf takes a second to come again
 
 
 @pytest.mark.parametrize("title", SMALL)
 def test_a_damaged_file_is_a_log_or_one_sentence(tmp_path: Path, title: str) -> None:
     fuzzed = Fuzzed(title, tmp_path)
-    wrong = [said for number in range(FILES) if (said := fuzzed.one(number)) is not None]
+    files = FEWER.get(title, FILES)
+    wrong = [said for number in range(files) if (said := fuzzed.one(number)) is not None]
     assert not wrong, "\n".join(wrong[:5])
-    assert fuzzed.read > FILES / 20  # the damage is such that some still read
+    assert fuzzed.read > files / 20  # the damage is such that some still read
     assert fuzzed.refused > 0
 
 

@@ -4,9 +4,8 @@ import tempfile
 import zlib
 from collections.abc import Callable
 from dataclasses import replace
-from io import BytesIO
+from io import BufferedIOBase, BytesIO
 from pathlib import Path
-from typing import BinaryIO
 
 from sensorfault.logs.readers.source import Damage, Tables, told
 from sensorfault.logs.table import LogError
@@ -59,7 +58,7 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
     return told(own, (), damage)
 
 
-def _unpack(path: Path, plain: BinaryIO, most: int | None = None) -> bool:
+def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:
     """Unpack as far as it goes, or until `most` bytes; whether all of it is sound.
 
     Python's own gzip gives nothing of the block in which the damage is.
@@ -82,7 +81,7 @@ def _unpack(path: Path, plain: BinaryIO, most: int | None = None) -> bool:
         return unpacker.eof
 
 
-def _byte_by_byte(unpacker: "zlib._Decompress", chunk: bytes, plain: BinaryIO) -> None:
+def _byte_by_byte(unpacker: "zlib._Decompress", chunk: bytes, plain: BufferedIOBase) -> None:
     for i in range(len(chunk)):
         try:
             plain.write(unpacker.decompress(chunk[i : i + 1]))
