@@ -84,7 +84,7 @@ def read_header(path: Path, lines: list[str]) -> Header:
             elif label == "# / TYPES OF OBSERV":
                 codes.setdefault("", []).extend(text[6:].split())
             elif label == "SYS / # / OBS TYPES":
-                system = text[0].strip() or system
+                system = text[:1].strip() or system
                 codes.setdefault(system, []).extend(text[6:].split())
             elif label == "TIME OF FIRST OBS":
                 header = replace(header, behind_s=_behind(text))

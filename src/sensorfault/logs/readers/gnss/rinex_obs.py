@@ -102,8 +102,8 @@ def _columns(header: Header, system: str) -> dict[str, int]:
             if wanted is not None:
                 found[name] = _WIDTH * codes.index(wanted)
         return found
-    ranges = [code for code in codes if code[0] == "C"]
-    first = next((code for code in ranges if code[1] == _FIRST.get(system, "1")), ranges[0] if ranges else None)
+    ranges = [code for code in codes if code.startswith("C")]
+    first = next((code for code in ranges if code[1:2] == _FIRST.get(system, "1")), ranges[0] if ranges else None)
     if first is None:
         return {}
     own = {name: f"{kind}{first[1:]}" for kind, name in _NAMES.items()}
