@@ -4,7 +4,7 @@ BIN := .venv/bin
 # shapes and types checked while tests run; an int will do for a float
 SHAPES := sensorfault,beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))
 
-.PHONY: demo test check real bench clean
+.PHONY: demo test check real fuzz bench clean
 
 demo: .venv/.installed        ## simulate a drive, let its sensors lie, find out
 	$(BIN)/sensorfault demo --out demo
@@ -20,6 +20,9 @@ check: .venv/.dev             ## lint, types, import contract
 
 real: .venv/.dev              ## the tests on the real logs in SENSORFAULT_DATA
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m real
+
+fuzz: .venv/.dev              ## ten thousand damaged files a reader (the tests take two hundred)
+	PYTHONPATH=tests $(BIN)/python -m fuzz
 
 bench: .venv/.bench           ## ratios against peers, each within one run
 	missed=0; for file in benchmarks/bench_*.py; do $(BIN)/python $$file || missed=1; done; exit $$missed

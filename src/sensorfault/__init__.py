@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sensorfault.evaluation.judge import judge
     from sensorfault.evaluation.page import write_page
     from sensorfault.events import Event
+    from sensorfault.export import write_events
     from sensorfault.faults.fault import Fault
     from sensorfault.faults.inject import inject
     from sensorfault.logs import Log, LogError, read, write
@@ -58,6 +59,7 @@ _HOME = {
     "read": "logs",
     "save": "store",
     "write": "logs",
+    "write_events": "export",
     "write_page": "evaluation.page",
 }
 
@@ -85,6 +87,7 @@ __all__ = [
     "read",
     "save",
     "write",
+    "write_events",
     "write_page",
 ]
 

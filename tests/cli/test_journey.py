@@ -185,3 +185,18 @@ def test_a_flight_as_a_demo(run: Run, tmp_path: Path) -> None:
     assert {event["sensor"] for event in events} == {"gnss", "barometer"}
     assert (tmp_path / "wing" / "flight.csv").exists()
     assert (tmp_path / "wing" / "report.html").exists()
+
+
+def test_events_for_other_programs(run: Run, drive: Path, car: Path, tmp_path: Path) -> None:
+    assert run("inject", drive, "--fault", "bias:gyro.z:64:3:20sigma", "--out", "bad.csv").code == 0
+    outs = ["events.jsonl", "events.csv", "events.mcap", "events.bag", "events_bag"]
+    options = [word for out in outs for word in ("--out", out)]
+    said = run("detect", "bad.csv", "--model", car, *options, "--json", "found.json")
+    assert said.code == 0, said.err
+    assert all((tmp_path / out).exists() for out in outs)
+    found = json.loads((tmp_path / "found.json").read_text())["events"]
+    assert [json.loads(line) for line in (tmp_path / "events.jsonl").read_text().splitlines()] == found
+    said = run("detect", "bad.csv", "--model", car, "--out", "events.doc")
+    assert said.code == 2
+    assert "events are written as" in said.err
+    assert run("detect", "bad.csv", "--model", car, "--out", "bad.csv").code == 2

@@ -1,4 +1,4 @@
-"""DataFlash logs, written here byte by byte: what is read, and each bad one as one sentence."""
+"""DataFlash logs: what is read, and each bad one as one sentence."""
 
 import struct
 from pathlib import Path
@@ -6,47 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from logs.written_dataflash import flight, formats, message
 from sensorfault.logs import LogError, VehicleFile, guess, read
-
-FMT = 128
-KINDS = {  # number, format, columns
-    "GPS": (130, "BIHBfffffffI", "Status,TimeMS,Week,NSats,HDop,Lat,Lng,RelAlt,Alt,Spd,VZ,T"),
-    "ATT": (131, "Ifff", "TimeMS,Roll,Pitch,Yaw"),
-    "IMU": (132, "QBffffff", "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ"),
-    "MSG": (133, "Z", "Message"),
-}
-PLAIN = {"Z": "64s"}
-RANDOM = np.random.default_rng(5)
-
-
-def message(kind: str, *values: object) -> bytes:
-    number, form, _ = KINDS[kind]
-    return b"\xa3\x95" + bytes([number]) + struct.pack("<" + "".join(PLAIN.get(c, c) for c in form), *values)
-
-
-def formats() -> bytes:
-    said = b""
-    own = ("FMT", FMT, "BBnNZ", "Type,Length,Name,Format,Columns")
-    for name, number, form, columns in (own, *((name, *kind) for name, kind in KINDS.items())):
-        plain = "BB4s16s64s" if name == "FMT" else "".join(PLAIN.get(c, c) for c in form)
-        row = (number, struct.calcsize("<" + plain) + 3, name.encode(), form.encode(), columns.encode())
-        said += b"\xa3\x95" + bytes([FMT]) + struct.pack("<BB4s16s64s", *row)
-    return said
-
-
-def flight(imus: int = 1) -> bytes:
-    """10 s: attitude and IMU at 50 Hz, fixes at 5 Hz on GPS time with the autopilot's own beside it."""
-    said = formats() + message("MSG", b"hello")
-    for k in range(500):
-        ms = 3000 + 20 * k
-        for i in range(imus):
-            gyro = RANDOM.normal(0, 0.1, 3)
-            said += message("IMU", 1000 * ms, i, *gyro, i + 0.1 * np.sin(k), 0.0, -9.8 + RANDOM.normal(0, 0.1))
-        said += message("ATT", ms, 10 * np.sin(k / 50), 5 * np.cos(k / 40), 180 + 170 * np.sin(k / 100))
-        if k % 10 == 0:
-            fix = (1.5, 30.1 + 1e-4 * k, -97.9, k / 10, 300 + k / 10, 3.0 + 0.1 * (k % 7), 0.1 * np.sin(k), ms)
-            said += message("GPS", 3, 388000000 + 20 * k, 1815, 9, *fix)
-    return said
+from sensorfault.logs.readers.formats import read_tables
 
 
 def put(folder: Path, content: bytes) -> Path:
@@ -62,10 +24,35 @@ def test_every_kind_of_message_on_the_autopilots_clock(tmp_path: Path) -> None:
     assert {file.table: file.time for file in vehicle.files} == {"IMU": "TimeUS", "ATT": "TimeMS", "GPS": "T"}
     log = read(path, vehicle)
     assert log.duration_s == pytest.approx(9.98)
-    fix = np.flatnonzero(log.fresh[:, log.index("height.altitude")])
+    fix = np.flatnonzero(log.fresh[:, log.index("gnss.altitude")])
     np.testing.assert_array_equal(fix, np.arange(0, 500, 10))
-    np.testing.assert_allclose(log.value[fix, log.index("height.altitude")], 300 + np.arange(50.0), rtol=1e-6)
+    np.testing.assert_allclose(log.value[fix, log.index("gnss.altitude")], 300 + np.arange(50.0), rtol=1e-6)
     np.testing.assert_allclose(log.value[0, log.index("attitude.yaw")], np.pi, rtol=1e-6)
+
+
+def test_numbers_and_units_as_the_log_describes_them(tmp_path: Path) -> None:
+    """A type with factors of its own, units by UNIT, MULT and FMTU."""
+
+    def described(number: int, name: str, form: str, columns: str, size: int) -> bytes:
+        row = struct.pack("<BB4s16s64s", number, size + 3, name.encode(), form.encode(), columns.encode())
+        return b"\xa3\x95\x80" + row
+
+    def said(number: int, form: str, *values: object) -> bytes:
+        return b"\xa3\x95" + bytes([number]) + struct.pack("<" + form, *values)
+
+    content = formats() + described(140, "UNIT", "QbZ", "TimeUS,Id,Label", 73)
+    content += described(141, "MULT", "Qbd", "TimeUS,Id,Mult", 17) + described(
+        142, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds", 41
+    )
+    content += described(143, "ODD", "QLch", "TimeUS,Lat,Tilt,Acc", 16)
+    for letter, unit in (("s", b"s"), ("D", b"deglatitude"), ("d", b"deg"), ("o", b"m/s/s")):
+        content += said(140, "Qb64s", 0, ord(letter), unit)
+    content += said(141, "Qbd", 0, ord("C"), 1e-3) + said(142, "QB16s16s", 0, 143, b"sDdo", b"F--C")
+    content += b"".join(said(143, "Qihh", 1000 * k, 481234567 + k, 150 + k, k) for k in range(20))
+    table = read_tables(put(tmp_path, content))["ODD"]
+    assert table.frame["Lat"][0] == 48.1234567
+    assert table.frame["Tilt"][3] == 1.53
+    assert (table.units["Lat"], table.units["Tilt"]) == ("deg", "deg")
 
 
 def test_several_imus_are_several_tables(tmp_path: Path) -> None:
@@ -86,7 +73,7 @@ def test_rubbish_inside_a_log_is_passed_over(tmp_path: Path, capfd: pytest.Captu
     whole = flight()
     log = read(put(tmp_path, whole[:8000] + bytes(range(1, 250)) * 40 + whole[8000:]))
     assert log.duration_s == pytest.approx(9.98)
-    assert any("of its bytes are messages" in note for note in log.notes)
+    assert any("9960 bytes belong to no message, the first at byte" in note for note in log.damage)
     assert capfd.readouterr() == ("", "")  # pymavlink's own remarks go nowhere
 
 

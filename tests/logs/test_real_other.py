@@ -75,8 +75,3 @@ def test_a_walk_whose_recording_began_inside_a_line(real_data: Path) -> None:
     assert len(log) == 20455
     assert any("first line is cut off" in note for note in log.notes)
     assert log.epoch_s == pytest.approx(1756402240.96 - 18, abs=1.0)
-
-
-def test_one_row_for_each_satellite_is_no_log(real_data: Path) -> None:
-    with pytest.raises(LogError, match=r"no time column|out of order"):
-        read(real_data / "gnss" / "smartloc_berlin_potsdamer_platz" / "RXM-RAWX.csv")

@@ -56,10 +56,10 @@ def test_dataflash_copters(real_data: Path, name: str, seconds: float, first: fl
     log = read(path, vehicle)
     assert log.duration_s == pytest.approx(seconds, abs=0.2)
     assert log.period_s == pytest.approx(0.02, abs=1e-3)
-    time, height = news(log, "gps_height.altitude")
+    time, height = news(log, "gnss.altitude")
     assert height[0] == pytest.approx(first, abs=0.01)
     assert np.median(np.diff(time)) == pytest.approx(0.2, abs=0.01)
-    barometer = news(log, "baro_height.altitude")
+    barometer = news(log, "barometer.altitude")
     # both say the same climb
     assert np.std(height - np.interp(time, *barometer)) < 0.2 * np.std(height)
     assert np.abs(news(log, "attitude.roll")[1]).max() < 1.0

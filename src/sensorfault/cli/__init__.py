@@ -4,7 +4,7 @@ import sys
 
 import click
 
-from sensorfault.cli import demo, detect, evaluate, fit, init, inject, methods, report, reproduce
+from sensorfault.cli import demo, detect, evaluate, fit, info, init, inject, methods, report, reproduce
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -13,12 +13,12 @@ def cli() -> None:
     """Notice when a vehicle's sensor lies, name it and the kind of fault.
 
     Start with `sensorfault demo`, or with a log of your own: `sensorfault init LOG`, then `sensorfault detect LOG`.
-    LOG is a CSV, Parquet or RTKLIB .pos file, NumPy arrays (NAME__t.npy beside NAME__value.npy), or a folder of such
-    files of one drive.
+    LOG is a file (PX4 .ulg, ArduPilot .bin, .log or .tlog, ROS .bag, .db3 or .mcap, CSV, Parquet, MATLAB, NumPy, GNSS
+    formats), or a folder of such files of one drive. `sensorfault info LOG` says what it holds.
     """
 
 
-for verb in (demo, init, fit, detect, inject, evaluate, report, methods, reproduce):
+for verb in (demo, init, info, fit, detect, inject, evaluate, report, methods, reproduce):
     cli.add_command(verb.command)
 
 

@@ -13,6 +13,14 @@ from sensorfault.cli import options, show, work
 @options.model_option
 @options.method_option
 @options.learn_option
+@click.option(
+    "--out",
+    "outs",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="Also write the events: .jsonl, .csv or .parquet; .mcap, annotations for viewers (with the log's messages, "
+    "if it is an .mcap); .bag (ROS 1) or a new folder (ROS 2) of DiagnosticArray. May be given several times.",
+)
 @click.option("--report", "report_path", type=click.Path(path_type=Path), help="Also write a report page (HTML).")
 @options.seed_option
 @options.json_option
@@ -22,6 +30,7 @@ def command(
     model_path: Path | None,
     method: str,
     learn: float,
+    outs: tuple[Path, ...],
     report_path: Path | None,
     seed: int,
     json_path: str | None,
@@ -30,11 +39,18 @@ def command(
 
     Without --model the method is fitted on the log's own beginning, which is then taken as healthy.
     """
-    work.check_outputs([report_path, json_path], [log, vehicle, model_path])
+    from sensorfault.export import check, write_events
+
+    for out in outs:
+        check(out)
+    work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     found = work.detect(ready.model, ready.judged)
     show.events(found.events, f"Faults in {table.name}", answer=json_path != "-")
+    for out in outs:
+        write_events(found.events, found.log, out, log if log.suffix.lower() == ".mcap" else None)
+        show.say(f"Wrote {out}.")
     if report_path is not None:
         from sensorfault.evaluation.page import write_page
 

@@ -20,7 +20,8 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
     from sensorfault.files import appearing
     from sensorfault.logs import LogError, guess
 
-    found = guess(log)
+    with show.reading(log.name) as tell:
+        found = guess(log, tell)
     target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
     if target.exists() and not force:
         raise LogError(f"{target} is there already; give another --out, or --force to replace it.")

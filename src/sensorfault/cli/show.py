@@ -3,9 +3,10 @@
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -31,6 +32,28 @@ def progress() -> Iterator["Progress"]:
     columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     with Progress(*columns, console=Console(stderr=True), transient=False) as bar:
         yield bar
+
+
+_PATIENCE_S = 0.5  # nobody needs to see how a small file is read
+
+
+@contextmanager
+def reading(name: str) -> Iterator[Callable[[float], None]]:
+    """What hears the share of a file that has been read; the display appears where that takes its time."""
+    begun = monotonic()
+    with ExitStack() as later:
+        shown: list[Callable[[float], None]] = []
+
+        def tell(share: float) -> None:
+            if monotonic() < begun + _PATIENCE_S:
+                return
+            if not shown:
+                bar = later.enter_context(progress())
+                task = bar.add_task(f"reading {name}", total=1.0)
+                shown.append(lambda share: bar.update(task, completed=share))
+            shown[0](share)
+
+        yield tell
 
 
 def table(

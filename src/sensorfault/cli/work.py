@@ -53,7 +53,8 @@ def read_log(path: Path, vehicle: Path | None) -> "Log":
     """Read a log and say what reading found."""
     from sensorfault.logs import read
 
-    log = read(path, vehicle)
+    with show.reading(path.name) as tell:
+        log = read(path, vehicle, tell=tell)
     show.say(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.")
     for note in log.notes:
         show.say(f"  {note}")

@@ -10,6 +10,7 @@ from jaxtyping import Float, Int
 from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
+from sensorfault.logs.usual import usual_step
 
 GAP = 3.0  # a gap is longer than so many usual periods
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
@@ -30,7 +31,7 @@ class Clock:
     @property
     def period_s(self) -> float:
         """The usual time between two rows [s]."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
     @property
     def is_unix(self) -> bool:
@@ -53,7 +54,7 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
         known = ", ".join(source.frame.columns)
         raise LogError(f"{source.path}: there is no time column '{column}'; take one of {known}.")
     zero, time = seconds(source, column, unit)
-    name, notes = source.path.name, []
+    name, notes = source.name, []
     usable = np.flatnonzero(np.isfinite(time))
     if len(usable) < len(time):
         bad = int(np.flatnonzero(~np.isfinite(time))[0])
@@ -125,7 +126,7 @@ def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -
             "are out of order; sort the file by time, keep one row for each time, or name another time column."
         )
     lost = counted(dropped, "row")
-    return rows, [f"{source.path.name}: time '{column}' {found} (first {source.place(first)}); {lost} left out."]
+    return rows, [f"{source.name}: time '{column}' {found} (first {source.place(first)}); {lost} left out."]
 
 
 def _longest_rise(time: np.ndarray) -> np.ndarray:
@@ -151,7 +152,7 @@ def _longest_rise(time: np.ndarray) -> np.ndarray:
 def _unsteady(name: str, time: np.ndarray) -> list[str]:
     """Sentences on gaps and jitter."""
     step = np.diff(time)
-    period = float(np.median(step))
+    period = usual_step(time)
     notes = []
     gaps = np.flatnonzero(step > GAP * period)
     if len(gaps):

@@ -3,6 +3,8 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
+from sensorfault.logs.usual import usual_step
+
 HELD_SHARE = 0.3  # a sensor is held if more than this share of its measurements is repeated in the next row
 STALE = 10.0  # a receiver that brings nothing new for so many of its periods has fallen silent
 _REGULAR = 0.88  # share of measurements that last as long as usual, give or take a row
@@ -91,7 +93,7 @@ def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"]
     A long standstill, where a held value cannot change, is one gap among many and does not move the median.
     """
     at: Float[np.ndarray, " N"] = time[_any(fresh)]
-    return float(np.median(np.diff(at))) if len(at) > 1 else float("nan")
+    return usual_step(at) if len(at) > 1 else float("nan")
 
 
 def _any_finite(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:

@@ -10,6 +10,7 @@ from sensorfault.logs.clock import GAP
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.stream import Stream
 
+MOST_FILLED, PER_ROW = 100_000, 10  # ticks put into gaps, or so many for each row; beyond it a clock has jumped
 SAME_S = 1e-6  # two clocks' readings this near are one time
 Resample = Literal["hold", "linear"]
 
@@ -35,8 +36,8 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold") -> OneC
         (only,) = streams
         return OneClock(only.zero_s, only.time, only.value, only.fresh)
     fastest = min(streams, key=lambda stream: stream.period_s)
-    ticks = _filled(fastest.time, fastest.period_s) if len(streams) > 1 else fastest.time
-    values, marks, notes = [], [], []
+    ticks, notes = _filled(fastest) if len(streams) > 1 else (fastest.time, [])
+    values, marks = [], []
     for stream in streams:
         time = stream.time + (stream.zero_s - fastest.zero_s)
         if resample == "linear":
@@ -49,14 +50,25 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold") -> OneC
     return OneClock(fastest.zero_s, ticks, np.concatenate(values, axis=1), np.concatenate(marks, axis=1), tuple(notes))
 
 
-def _filled(time: np.ndarray, period: float) -> np.ndarray:
-    """The ticks, and new ones inside each gap."""
+def _filled(fastest: Stream) -> tuple[np.ndarray, list[str]]:
+    """The ticks, and new ones inside each gap; a clock that jumps leaves a gap without, and a sentence says so."""
+    time, period = fastest.time, fastest.period_s
     step = np.diff(time)
-    pieces = [time]
-    for i in np.flatnonzero(step > GAP * period):
-        count = round(step[i] / period) - 1
-        pieces.append(time[i] + step[i] * np.arange(1, count + 1) / (count + 1))
-    return np.sort(np.concatenate(pieces))
+    gaps = np.flatnonzero(step > GAP * period)
+    count = np.round(step[gaps] / period) - 1
+    shortest = np.argsort(count, kind="stable")
+    filled = np.zeros(len(gaps), bool)
+    filled[shortest] = np.cumsum(count[shortest]) <= max(MOST_FILLED, PER_ROW * len(time))
+    new = [
+        time[i] + step[i] * np.arange(1, ticks + 1) / (ticks + 1)
+        for i, ticks in zip(gaps[filled], count[filled], strict=True)
+    ]
+    notes = [
+        f"{fastest.name}: its clock jumps by {step[i]:.6g} s at {time[i]:.3f} s, too far for a gap in a log of "
+        f"{len(time)} rows; no ticks were put there."
+        for i in gaps[~filled][:1]
+    ]
+    return np.sort(np.concatenate([time, *new])), notes
 
 
 def _placed(

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.readers.formats import SUFFIXES
-from sensorfault.logs.readers.npy import called_by
+from sensorfault.logs.readers.formats import SUFFIXES, format_of
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -24,8 +23,8 @@ def files_of(path: Where) -> list[Path]:
         if not files:
             raise LogError("no file was named; name a file, a folder or several files of one drive.")
     elif Path(path).is_dir():
-        files = [file for file in Path(path).iterdir() if file.is_file() and file.suffix.lower() in SUFFIXES]
-        files = sorted({called_by(file) if file.suffix.lower() == ".npy" else file for file in files})
+        inside = ((file, format_of(file)) for file in Path(path).iterdir() if file.is_file())
+        files = sorted({form.leader(file) for file, form in inside if form is not None})
         if not files:
             raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(SUFFIXES)} there.")
     else:

@@ -1,14 +1,17 @@
 """Read a log: its files, its vehicle file, one clock."""
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from sensorfault.logs.clock import is_unix
+from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.guess import guess
 from sensorfault.logs.one_clock import OneClock, Resample, put_on_one_clock
 from sensorfault.logs.place import Where, find_vehicle, pair_files
-from sensorfault.logs.readers.formats import read_source
+from sensorfault.logs.readers.formats import read_tables, take_table
+from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.stream import Stream, read_stream
 from sensorfault.logs.table import Log
 from sensorfault.logs.vehicle import VehicleFile
@@ -16,8 +19,16 @@ from sensorfault.logs.vehicle import VehicleFile
 GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
 
 
-def read(path: Where, vehicle: str | Path | VehicleFile | None = None, resample: Resample = "hold") -> Log:
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
+def read(
+    path: Where,
+    vehicle: str | Path | VehicleFile | None = None,
+    resample: Resample = "hold",
+    tell: Callable[[float], None] = lambda share: None,
+) -> Log:
     """Read a log.
+
+    A damaged file is read as far as it can be: `Log.damage` says where that ends.
 
     Args:
         path: a file, a folder, or several files of one drive.
@@ -26,6 +37,7 @@ def read(path: Where, vehicle: str | Path | VehicleFile | None = None, resample:
         resample: how slower files come to the ticks of the fastest. "hold": a measurement is put on the first tick
             at or after its own time and the other ticks stay empty. "linear": drawn between measurements, which looks
             into the future and smooths faults over; for plots, and for papers that ask for it.
+        tell: hears how much of a large file has been read, 0 to 1.
 
     Returns:
         The log in SI units on one clock.
@@ -34,19 +46,39 @@ def read(path: Where, vehicle: str | Path | VehicleFile | None = None, resample:
         LogError: whatever keeps the log from being used, in one sentence.
     """
     described = find_vehicle(path, vehicle)
-    known = described or guess(path)
+    known = described or guess(path, tell)
     notes = () if described else (GUESSED, *known.notes)
-    streams = []
-    for entry, file in pair_files(known, path):
-        sensors = tuple(sensor for sensor in known.sensors if sensor.file == entry.name)
-        if sensors:
-            streams.append(read_stream(read_source(file, entry.table), entry, sensors))
+    used = {sensor.file for sensor in known.sensors}
+    pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]
+    sources = _sources(pairs, described is None, tell)
+    streams = [
+        read_stream(source, entry, tuple(sensor for sensor in known.sensors if sensor.file == entry.name))
+        for (entry, _), source in zip(pairs, sources, strict=True)
+    ]
     clock = put_on_one_clock(streams, resample)
-    said = tuple(note for stream in streams for note in stream.notes)
-    return _log(known, streams, clock, (*notes, *said, *clock.notes))
+    damage = tuple(dict.fromkeys(one.sentence(source.path) for source in sources for one in source.damage))
+    said = [note for stream in streams for note in stream.notes]
+    all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
+    return _log(known, streams, clock, all_notes, damage)
 
 
-def _log(vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tuple[str, ...]) -> Log:
+def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callable[[float], None]) -> list[Source]:
+    """Each entry's table; each file is read once. `whole`: all of its tables, as `guess` has just asked for them."""
+    wanted: dict[Path, list[FileEntry]] = {}
+    for entry, file in pairs:
+        wanted.setdefault(file, []).append(entry)
+    found: dict[str, Source] = {}
+    for file, entries in wanted.items():
+        names = frozenset(entry.table for entry in entries if entry.table is not None)
+        every = whole or any(entry.table is None for entry in entries)
+        tables = read_tables(file, Ask(None if every else names, tell))
+        found |= {entry.name: take_table(file, tables, entry.table) for entry in entries}
+    return [found[entry.name] for entry, _ in pairs]
+
+
+def _log(
+    vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tuple[str, ...], damage: tuple[str, ...]
+) -> Log:
     """The streams' channels in the order of the vehicle file."""
     start = clock.zero_s + float(clock.time[0])
     zero = start if vehicle.zero_s is None else vehicle.zero_s
@@ -64,6 +96,7 @@ def _log(vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tu
         sensors=tuple(sensors[sensor.name] for sensor in vehicle.sensors),
         name=vehicle.name,
         notes=notes,
+        damage=damage,
         epoch_s=epoch,
         wheelbase_m=vehicle.wheelbase_m,
         steering_ratio=vehicle.steering_ratio,

@@ -13,7 +13,9 @@ from sensorfault.logs.readers.rtklib import read_tag
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
+from sensorfault.logs.usual import usual_step
 
+_NAMED = 6  # columns listed in one sentence
 _LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
 
 
@@ -33,7 +35,7 @@ class Stream:
     @property
     def period_s(self) -> float:
         """The usual time between two rows [s]."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
 
 def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...]) -> Stream:
@@ -56,7 +58,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         start, rate = read_tag(source.path.parent / file.tag, source.path, counter, clock.rows + source.first_line)
         zero = start + rate * clock.zero_s + file.offset_s
         notes.append(
-            f"{source.path.name}: {file.tag} ties its counter to GPS time; the counter runs "
+            f"{source.name}: {file.tag} ties its counter to GPS time; the counter runs "
             f"{abs(rate - 1) * 1e6:.1f} ppm {'slow' if rate > 1 else 'fast'}, which was corrected."
         )
     time = clock.time * rate
@@ -74,12 +76,12 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         if sensor.held and sensor.epoch is not None:
             late = stale(time, fresh[:, own], period)
             value[late, own] = np.nan
-            notes += _stale_note(source.path.name, sensor.name, late, period)
+            notes += _stale_note(source.name, sensor.name, late, period)
         described.append(Sensor(sensor.name, period, sensor.held))
-        notes += _held_note(source.path.name, sensor, value[:, own], fresh[:, own], period)
+        notes += _held_note(source.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
     notes += gaps.notes()
-    return Stream(source.path.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
+    return Stream(source.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
 
 
 class _Gaps:
@@ -96,19 +98,22 @@ class _Gaps:
     def notes(self) -> list[str]:
         said = []
         for what, entries in self.found.items():
-            names = ", ".join(f"'{column}' ({count})" for column, count, _ in entries)
+            names = ", ".join(f"'{column}' ({count})" for column, count, _ in entries[:_NAMED])
+            if len(entries) > _NAMED:
+                names += f" and {len(entries) - _NAMED} other columns"
             first = self.source.place(min(row for _, _, row in entries))
-            said.append(f"{self.source.path.name}: cells {what} in {names}, first in {first}; read as no value.")
+            said.append(f"{self.source.name}: cells {what} in {names}, first in {first}; read as no value.")
         return said
 
 
 def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, silent: bool) -> np.ndarray:
     """One column in SI on the kept rows, NaN where it holds no value; `silent`: it may hold none at all."""
     value = source.column(channel.column).cast(pl.Float64).to_numpy()
-    infinite, empty = np.isinf(value), np.isnan(value)
-    gaps.see("are infinite", channel.column, infinite)
-    gaps.see("are empty", channel.column, empty)
-    absent = infinite | empty
+    absent = ~np.isfinite(value)
+    if absent.any():
+        empty = np.isnan(value)
+        gaps.see("are infinite", channel.column, absent & ~empty)
+        gaps.see("are empty", channel.column, empty)
     if channel.missing is not None:
         absent |= value == channel.missing
     if absent.all() and not silent:
@@ -116,8 +121,9 @@ def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, s
             f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml, or write "
             "period_s into its sensor if that was silent."
         )
-    si: Float[np.ndarray, " T"] = np.where(absent, np.nan, to_si(value, channel.unit))[clock.rows]
-    return si
+    si: Float[np.ndarray, " T"] = to_si(value, channel.unit)  # always a new array
+    si[absent] = np.nan
+    return si if len(clock.rows) == len(si) else si[clock.rows]
 
 
 def _fresh(source: Source, sensor: SensorEntry, value: np.ndarray, clock: Clock) -> np.ndarray:

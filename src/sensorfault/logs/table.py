@@ -55,6 +55,7 @@ class Log:
     `value` is SI, NaN where nothing arrived. `fresh` marks new measurements, not held ones: fresh implies a value.
     `wheelbase_m` and `steering_ratio` are the vehicle's, if its file says them.
     `notes`: what reading found that a person should know (clock faults, held rows, guesses), one sentence each.
+    `damage`: those of them that say where a file could not be read, and what was read all the same.
     """
 
     time: Float[np.ndarray, " T"]
@@ -64,6 +65,7 @@ class Log:
     sensors: tuple[Sensor, ...]
     name: str = "log"
     notes: tuple[str, ...] = ()
+    damage: tuple[str, ...] = ()
     epoch_s: float | None = None
     wheelbase_m: float | None = None
     steering_ratio: float | None = None

@@ -16,9 +16,12 @@ UNITS: dict[str, tuple[str, float]] = {
     "%": ("", 0.01),
     "rad": ("rad", 1.0),
     "deg": ("rad", DEGREE),
+    "cdeg": ("rad", 1e-2 * DEGREE),
     "1e-7deg": ("rad", 1e-7 * DEGREE),
     "rad/s": ("rad/s", 1.0),
     "deg/s": ("rad/s", DEGREE),
+    "mrad/s": ("rad/s", 1e-3),
+    "cdeg/s": ("rad/s", 1e-2 * DEGREE),
     "m/s^2": ("m/s^2", 1.0),
     "g": ("m/s^2", STANDARD_GRAVITY),
     "mg": ("m/s^2", 1e-3 * STANDARD_GRAVITY),
@@ -40,6 +43,7 @@ UNITS: dict[str, tuple[str, float]] = {
     "T": ("T", 1.0),
     "uT": ("T", 1e-6),
     "gauss": ("T", 1e-4),
+    "mgauss": ("T", 1e-7),
     "V": ("V", 1.0),
     "mV": ("V", 1e-3),
     "A": ("A", 1.0),
@@ -74,6 +78,12 @@ _SPELLINGS = {
     "°C": "degC",
     "G": "gauss",
     "Gauss": "gauss",
+    "mGauss": "mgauss",
+    "deglatitude": "deg",
+    "deglongitude": "deg",
+    "degheading": "deg",
+    "degE7": "1e-7deg",
+    "mG": "mg",
 }
 
 Number = TypeVar("Number", float, np.ndarray)

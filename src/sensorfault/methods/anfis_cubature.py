@@ -1,6 +1,7 @@
 """How far off is each range, as fuzzy rules foretell it from what an adaptive cubature filter makes of it."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -67,6 +68,7 @@ def _recipe(rmse: bool) -> Recipe:
         source="Xu et al. 2023, (1)-(35)" if rmse else "Xu et al. 2023 with its limit T1 in the place of T2",
         promise="none",
         build=build,
+        needs=partial(followed, name),
     )
 
 

@@ -1,7 +1,7 @@
 """Paper A's second comparator of the LSTM: an autoregressive model, by least squares."""
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.predicted import LENGTH, from_windows
+from sensorfault.methods.predicted import LENGTH, Positions, from_windows
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.training.autoregression import fit_autoregression
@@ -21,4 +21,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 3.2: the comparator of the LSTM",
     promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
     build=build,
+    needs=lambda log: Positions.of(NAME, log),
 )

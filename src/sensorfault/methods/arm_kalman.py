@@ -1,5 +1,6 @@
 """Do both joints of an arm move as its torques say: a Kalman filter on the paper's arm, each innovation by itself."""
 
+from functools import partial
 from statistics import NormalDist
 
 import jax.numpy as jnp
@@ -35,12 +36,8 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
     Raises:
         LogError: other joints than two, too few rows, or an arm that does not move as `arm` does.
     """
-    found = joints(log)
-    outputs = (*found.rates, *found.angles)
-    channels = len(log.channels)
-    watched = np.isin(np.arange(channels), outputs)
-    rows = complete(log, watched)
-    _check(name, log, found, int(rows.sum()))
+    found, watched, rows = _two_joints(name, log)
+    outputs, channels = (*found.rates, *found.angles), len(log.channels)
     r = noise(log.value[:, outputs]) ** 2
     limit = NormalDist().inv_cdf(1 - far / 2)
     monitor = Monitor(
@@ -71,15 +68,26 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
     return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)
 
 
-def _check(name: str, log: Log, found: Joints, rows: int) -> None:
+def _two_joints(name: str, log: Log) -> tuple[Joints, Bool[np.ndarray, " C"], Bool[np.ndarray, " T"]]:
+    """The joints, the columns watched and the rows that have all of them.
+
+    Raises:
+        LogError: other joints than two, or too few rows.
+    """
+    found = joints(log)
     for what, columns in (("rate", found.rates), ("angle", found.angles), ("torque", found.torques)):
         if len(columns) != 2:
             raise LogError(
                 f"{log.name} has {len(columns)} channels called {what} in SI's unit, {name} needs one for each of two "
                 "joints; name the columns in vehicle.toml, or take another method."
             )
-    if rows < LEAST_ROWS:
-        raise LogError(f"{log.name} has {rows} rows with every rate and angle, {name} needs {LEAST_ROWS}; give more.")
+    watched = np.isin(np.arange(len(log.channels)), (*found.rates, *found.angles))
+    rows = complete(log, watched)
+    if rows.sum() < LEAST_ROWS:
+        raise LogError(
+            f"{log.name} has {rows.sum()} rows with every rate and angle, {name} needs {LEAST_ROWS}; give more."
+        )
+    return found, watched, rows
 
 
 def _sigma(name: str, log: Log, monitor: Monitor, watched: Bool[np.ndarray, " C"]) -> tuple[float, ...]:
@@ -108,4 +116,5 @@ RECIPE = Recipe(
     promise="one false alarm in 10,000 samples of each sensor, if the arm and its noise are what the filter takes them "
     "for",
     build=_build,
+    needs=partial(_two_joints, "arm-kalman"),
 )

@@ -16,7 +16,7 @@ from sensorfault.monitor.statistic.normality import Normality
 from sensorfault.monitor.statistic.whitened import Whitened
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.numerics.normality import jarque_bera_quantile
-from sensorfault.training.bicycle import WARM_S, fit_bicycle, normalised
+from sensorfault.training.bicycle import WARM_S, check_bicycle, fit_bicycle, normalised
 from sensorfault.training.gumbel import gumbel_limit
 from sensorfault.training.session import Session
 from sensorfault.training.tapes import score_tape
@@ -122,4 +122,5 @@ RECIPE = Recipe(
     promise="one false alarm an hour, extrapolated from the largest scores of the training drive's blocks, and a "
     "quarter on top of the windows' limits",
     build=_build,
+    needs=lambda log: check_bicycle(log, roles(log)),
 )

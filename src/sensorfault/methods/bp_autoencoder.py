@@ -1,6 +1,7 @@
 """Paper A's comparator of the extreme learning machine: the same autoencoder, trained by backpropagation."""
 
 from sensorfault.logs.table import Log
+from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.reconstructed import reconstructed
 from sensorfault.model import Model
@@ -22,4 +23,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 3.1: the comparator of the extreme learning machine",
     promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
     build=build,
+    needs=lambda log: Training.of(NAME, log),
 )

@@ -26,4 +26,5 @@ RECIPE = Recipe(
     source="Min et al. 2021 with what did better beside it: `sensorfault reproduce min2021` prints the comparison",
     promise="one false alarm an hour, extrapolated from the healthy scores of blocks left out of the fit",
     build=_build,
+    parts=PARTS,
 )

@@ -1,5 +1,6 @@
 """Is each range where dead reckoning and the other leaders put it: the innovation's χ² test, at .05 and .01."""
 
+from functools import partial
 from statistics import NormalDist
 
 from sensorfault.logs.table import Log
@@ -42,6 +43,7 @@ def _recipe(far: float, adaptive: bool) -> Recipe:
         source="Xu et al. 2023, (1)-(20)" + (", (30), (31)" if adaptive else "") + ", and the test it compares with",
         promise=f"{far:g} of the healthy ranges, if the noise is Gaussian and the filter right about it",
         build=build,
+        needs=partial(followed, name),
     )
 
 

@@ -1,5 +1,7 @@
 """Which of a follower's leaders lies: the recipe we stand for."""
 
+from functools import partial
+
 import numpy as np
 
 from sensorfault.logs.table import Log
@@ -52,4 +54,5 @@ RECIPE = Recipe(
     source="Xu et al. 2023, (1)-(20), (30), (31), with noises fitted to the log; no rules, which gain nothing on it",
     promise="0.01 of the healthy ranges, if the noise is Gaussian",
     build=_build,
+    needs=partial(followed, "cooperative"),
 )

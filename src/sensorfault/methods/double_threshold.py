@@ -1,6 +1,7 @@
 """A cubature filter's innovations under two thresholds, and a network that decides between them."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import jax.numpy as jnp
 import numpy as np
@@ -90,4 +91,5 @@ RECIPE = Recipe(
     source="the test of Zhao et al. 2020 that Xu et al. 2023 compare with, in our reading",
     promise="none",
     build=_build,
+    needs=partial(followed, "double-threshold"),
 )

@@ -36,7 +36,7 @@ def recipe(test: DriftTest, title: str, source: str) -> Recipe:
         session.tell("learning how two heights differ when healthy")
         return drift(log, test)
 
-    return Recipe(test.name, f"{title}; {PRESUMES}", source, PROMISE, build)
+    return Recipe(test.name, f"{title}; {PRESUMES}", source, PROMISE, build, lambda log: _two_heights(test.name, log))
 
 
 def drift(log: Log, test: DriftTest) -> Model:
@@ -73,14 +73,8 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
     Raises:
         LogError: not two heights, or too short a flight.
     """
-    found = roles(log)
-    if found.height is None or found.barometric is None:
-        lacks = "no height of a satellite receiver" if found.height is None else "no height of a barometer"
-        raise LogError(
-            f"{log.name} has {lacks}; {name} compares the two: name the columns in vehicle.toml, or take a method that "
-            "needs only one."
-        )
     needed = LEAST_WINDOWS * setting.window_s
+    measured, reference = _two_heights(name, log)
     if log.duration_s < needed:
         raise LogError(
             f"{log.name} lasts {log.duration_s:.0f} s, {name} needs {needed:.0f} s to learn what is healthy; give it a "
@@ -92,11 +86,27 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
         memory_s=jnp.asarray(setting.memory_s),
         gap_s=setting.gap_s,
         variance=jnp.ones(()),
-        measured=found.height,
-        reference=found.barometric,
+        measured=measured,
+        reference=reference,
         channels=len(log.channels),
     )
     return fit_difference(part, log, setting.lagging)
+
+
+def _two_heights(name: str, log: Log) -> tuple[int, int]:
+    """Columns of the receiver's height and of the barometer's.
+
+    Raises:
+        LogError: not both.
+    """
+    found = roles(log)
+    if found.height is None or found.barometric is None:
+        lacks = "no height of a satellite receiver" if found.height is None else "no height of a barometer"
+        raise LogError(
+            f"{log.name} has {lacks}; {name} compares the two: name the columns in vehicle.toml, or take a method that "
+            "needs only one."
+        )
+    return found.height, found.barometric
 
 
 def monitor(

@@ -22,4 +22,5 @@ RECIPE = Recipe(
     promise="one false alarm an hour of inertial unit and position, extrapolated from healthy scores; of heights none: "
     "their limits are half as high again as the largest of the healthy flight",
     build=_build,
+    parts=PARTS,
 )

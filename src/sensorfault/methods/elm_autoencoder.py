@@ -1,6 +1,9 @@
 """Paper A's detector of instantaneous faults: an extreme learning machine that copies a healthy sample."""
 
+from functools import partial
+
 from sensorfault.logs.table import Log
+from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.reconstructed import reconstructed
 from sensorfault.model import Model
@@ -18,4 +21,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 2.1, equations (3)-(11)",
     promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
     build=_build,
+    needs=partial(Training.of, "elm-autoencoder"),
 )

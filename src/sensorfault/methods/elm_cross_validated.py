@@ -1,6 +1,9 @@
 """Paper A's autoencoder under a limit that knows what it does to a drive it has not seen."""
 
+from functools import partial
+
 from sensorfault.logs.table import Log
+from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.reconstructed import reconstructed
 from sensorfault.model import Model
@@ -23,4 +26,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 2.1; the limit by cross-validation instead of equation (10)'s training error",
     promise="none in numbers: the limit is the largest error on healthy blocks left out of the fit, scaled",
     build=_build,
+    needs=partial(Training.of, "elm-cross-validated"),
 )

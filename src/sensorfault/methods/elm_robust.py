@@ -1,6 +1,9 @@
 """Paper A's autoencoder for training data in which a few rows are wrong."""
 
+from functools import partial
+
 from sensorfault.logs.table import Log
+from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.reconstructed import reconstructed
 from sensorfault.model import Model
@@ -23,4 +26,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 2.1; extremes as far as the tail explains them (Hill 1975)",
     promise="none: the limit is the largest explained training error, scaled",
     build=_build,
+    needs=partial(Training.of, "elm-robust"),
 )

@@ -19,10 +19,9 @@ def from_last(name: str, log: Log, order: int) -> Model:
     Raises:
         LogError: neither joints nor positions; joints that rest; too few positions, or a drive that never moves.
     """
-    found = joints(log)
-    if found.rates or found.angles:
+    positions = joints_or_position(name, log)
+    if positions is None:
         return _of_arm(name, log, order)
-    positions = Positions.of(name, log)
     residual = Extrapolation(
         watched=jnp.asarray(positions.mark(positions.columns)),
         angle=jnp.asarray(positions.mark(positions.turning)),
@@ -31,6 +30,16 @@ def from_last(name: str, log: Log, order: int) -> Model:
         order=order,
     )
     return limited(name, positions, residual, {})
+
+
+def joints_or_position(name: str, log: Log) -> Positions | None:
+    """The positions; None if the log is of joints.
+
+    Raises:
+        LogError: neither; too few positions, or a drive that never moves.
+    """
+    found = joints(log)
+    return None if found.rates or found.angles else Positions.of(name, log)
 
 
 def _of_arm(name: str, log: Log, order: int) -> Model:

@@ -162,4 +162,5 @@ RECIPE = Recipe(
     promise="none; limits are half as high again as the largest of the healthy flight: a flight of minutes shows no "
     "rate of what has a memory of a minute",
     build=build,
+    needs=lambda log: _witnesses(log, roles(log)),
 )

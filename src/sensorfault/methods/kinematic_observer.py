@@ -108,4 +108,5 @@ RECIPE = Recipe(
     source="Wang S. et al., with their vertical speed and without their network",
     promise=f"{PER_HOUR:g} false alarm an hour in all, from the tails of the healthy residuals",
     build=_build,
+    needs=lambda log: climbing(Heights.of(NAME, log)),
 )

@@ -1,7 +1,9 @@
 """What the last few rows lead to expect of the newest one: the plain method that a network has to beat."""
 
+from functools import partial
+
 from sensorfault.logs.table import Log
-from sensorfault.methods.conditioned import conditioned
+from sensorfault.methods.conditioned import conditioned, in_a_row
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.training.session import Session
@@ -17,4 +19,5 @@ RECIPE = Recipe(
     source="conditional mean of a Gaussian vector; the limit as Min et al. 2021, equations (10)-(11), cross-validated",
     promise="none in numbers: the limit is the largest score on healthy blocks left out of the fit, scaled",
     build=_build,
+    needs=partial(in_a_row, "linear-conditioning"),
 )

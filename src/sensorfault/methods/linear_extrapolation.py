@@ -1,7 +1,7 @@
 """What every predictor has to beat: a position, or each joint of an arm, goes on as it went."""
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.extrapolated import from_last
+from sensorfault.methods.extrapolated import from_last, joints_or_position
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.training.session import Session
@@ -21,4 +21,5 @@ RECIPE = Recipe(
     promise="of a position none: the limit is the largest training error, scaled; fit measures the rate on data it did "
     "not see. Of joints one false alarm an hour in all, from the tail of the healthy residual",
     build=build,
+    needs=lambda log: joints_or_position(NAME, log),
 )

@@ -1,6 +1,7 @@
 """Is each range further off than it may be: logistic regression, the plain twin of anfis-cubature."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.ranged import (
@@ -50,4 +51,5 @@ RECIPE = Recipe(
     source="the features of Xu et al. 2023, (28)-(31), without fuzzy rules",
     promise="none",
     build=_build,
+    needs=partial(followed, "logistic-cubature"),
 )

@@ -41,14 +41,7 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     Raises:
         LogError: no positions, neither velocity nor inertial unit, too little of them, or a drive that never moves.
     """
-    positions = Positions.of(NAME, log)
-    found = positions.roles
-    inertial = (*(found.gyro or ()), *(found.accelerometer or ()))
-    if not inertial and found.velocity is None:
-        raise LogError(
-            f"{log.name} has neither gyro, accelerometer nor velocity, from which {NAME} tells the way; "
-            "name the columns in vehicle.toml, or take another method."
-        )
+    positions, inertial = _told_by(log)
     untrained = _untrained(positions, inertial, seed, size)
     x = samples(log.time, log.value, log.fresh)
     deaf = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
@@ -58,7 +51,7 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     windows, mend = _windows(seen, valid[:, list(positions.columns)].all(axis=1))
     network = train(untrained.network, windows, size.plan, seed, session).net
     residual = eqx.tree_at(lambda r: (r.network, r.mend), untrained, (network, jnp.asarray(mend)))
-    told = {"inputs": [log.channels[i].path for i in (*inertial, *(found.velocity or ()))]}
+    told = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
     return limited(NAME, positions, residual, told, METRE / _cosines(positions))
 
 
@@ -108,10 +101,24 @@ def _windows(seen: Seen, valid: np.ndarray) -> tuple[Windows, float]:
     return Windows(rows.reshape(-1, width), np.arange(count) * length, left / mend, length), mend
 
 
+def _told_by(log: Log) -> tuple[Positions, tuple[int, ...]]:
+    """The positions, and the columns of the inertial unit."""
+    positions = Positions.of(NAME, log)
+    found = positions.roles
+    inertial = (*(found.gyro or ()), *(found.accelerometer or ()))
+    if not inertial and found.velocity is None:
+        raise LogError(
+            f"{log.name} has neither gyro, accelerometer nor velocity, from which {NAME} tells the way; "
+            "name the columns in vehicle.toml, or take another method."
+        )
+    return positions, inertial
+
+
 RECIPE = Recipe(
     name=NAME,
     title="Displacement of the last second by an LSTM that does not see its positions, scaled largest training error",
     source="after Min et al. 2021, section 2.2, for jams that repeat the last position",
     promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
     build=build,
+    needs=_told_by,
 )

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.predicted import LENGTH, from_windows
+from sensorfault.methods.predicted import LENGTH, Positions, from_windows
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.numerics.networks.dense import Mlp
@@ -41,4 +41,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 3.2: the comparator of the LSTM",
     promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
     build=build,
+    needs=lambda log: Positions.of(NAME, log),
 )

@@ -224,4 +224,5 @@ RECIPE = Recipe(
     promise="one false alarm an hour for all its tests together, extrapolated from the tail of the training drive, and "
     "a quarter on top of each limit",
     build=_build,
+    needs=_checked,
 )

@@ -135,4 +135,5 @@ RECIPE = Recipe(
     source="Wang S. et al., multi-step neural network observer of a flapping-wing aircraft",
     promise=f"{PER_HOUR:g} false alarm an hour, from the tail of the residual over its limit on data not learned from",
     build=build,
+    needs=lambda log: _columns(Heights.of(NAME, log)),
 )

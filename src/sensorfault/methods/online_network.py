@@ -145,4 +145,5 @@ RECIPE = Recipe(
     source="Niu & Zhao 1998",
     promise=f"{each.PER_HOUR:g} false alarm an hour in all, from the tail of the healthy residual",
     build=build,
+    needs=lambda log: Training.of(NAME, log, OFTEN),
 )

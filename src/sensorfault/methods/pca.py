@@ -1,6 +1,9 @@
 """The baseline every reconstruction has to beat: three principal components under the same limit."""
 
+from functools import partial
+
 from sensorfault.logs.table import Log
+from sensorfault.methods.joint import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.methods.reconstructed import reconstructed
 from sensorfault.model import Model
@@ -18,4 +21,5 @@ RECIPE = Recipe(
     source="Jackson & Mudholkar 1979; the limit as Min et al. 2021, equations (10)-(11)",
     promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
     build=_build,
+    needs=partial(Training.of, "pca"),
 )

@@ -6,6 +6,7 @@ seconds later, each time. Changes alone cost 2 to 11 % of the smallest spike tha
 """
 
 from dataclasses import replace
+from functools import partial
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -49,4 +50,5 @@ RECIPE = Recipe(
     source="conditional mean of a Gaussian vector; the limit a tail of block maxima (Hosking & Wallis 1987)",
     promise="one false alarm an hour, extrapolated from the scores of blocks left out of the fit",
     build=build,
+    needs=partial(in_a_row, "relative-conditioning"),
 )

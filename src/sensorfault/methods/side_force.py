@@ -13,6 +13,7 @@ from sensorfault.monitor.recovery.drop import Drop
 from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.training.limits import tail_limit
+from sensorfault.training.mounting import fit_mounting
 from sensorfault.training.session import Session
 from sensorfault.training.side_force import fit_side_force
 from sensorfault.training.tapes import score_tape
@@ -69,4 +70,5 @@ RECIPE = Recipe(
     "controllers make (van Zanten 2000)",
     promise="one false alarm an hour, extrapolated from the tail of the training drive, and a quarter on top",
     build=_build,
+    needs=lambda log: fit_mounting(log, roles(log)),
 )

@@ -43,13 +43,18 @@ def fit_bicycle(
     """
     if wheelbase_m is not None and not wheelbase_m > 0:
         raise LogError(f"{log.name}: the wheelbase is {wheelbase_m:g} m; give the distance of the axles, above 0.")
-    _check(log, found)
+    check_bicycle(log, found)
     fitted = _descend(_start(log, found, wheelbase_m, steering_ratio), log, found)
     healthy: BicycleKalman = eqx.tree_at(lambda m: m.spread, fitted, jnp.asarray(healthy_spread(fitted, log)))
     return healthy
 
 
-def _check(log: Log, found: Roles) -> None:
+def check_bicycle(log: Log, found: Roles) -> None:
+    """Whether the log has what the bicycle is fitted to.
+
+    Raises:
+        LogError: a channel that is missing, or a drive that hardly moves.
+    """
     steered = found.steering is not None
     lacking = [
         words

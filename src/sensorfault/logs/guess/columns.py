@@ -1,6 +1,7 @@
 """Which columns measure something, and what."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +20,7 @@ _STEADY = 0.15  # relative spread below which three axes have a steady length
 
 OTHER_TIME = "another time, or bookkeeping of it"
 QUALITY = "quality or state, no measurement of motion"
+NO_SENSOR = "no sensor's reading, as this format is documented"
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,10 @@ class Column:
     value: Float[np.ndarray, " T"]
 
 
-def measurements(source: Source, time: str, clock: Clock) -> tuple[list[Column], list[tuple[str, str]]]:
-    """Columns that measure something, and the others with the reason why not.
+def measurements(
+    source: Source, time: str, clock: Clock, fields: Mapping[str, Meaning] | None = None
+) -> tuple[list[Column], list[tuple[str, str]]]:
+    """Columns that measure something, and the others with the reason why not; `fields`: all that may, if known.
 
     Raises:
         LogError: a column of numbers has a cell that is none.
@@ -40,8 +44,12 @@ def measurements(source: Source, time: str, clock: Clock) -> tuple[list[Column],
     for name in source.frame.columns:
         if name == time:
             continue
-        meaning = read_name(name)
-        if meaning.kind == "time":
+        meaning = (
+            read_name(name, source.units.get(name, ""), source.frame.columns) if fields is None else fields.get(name)
+        )
+        if meaning is None:
+            left_out.append((name, NO_SENSOR))
+        elif meaning.kind == "time":
             left_out.append((name, OTHER_TIME))
         elif meaning.kind == "quality":
             left_out.append((name, QUALITY))

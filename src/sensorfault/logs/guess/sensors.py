@@ -83,6 +83,8 @@ def _sensor(device: Device, clock: Clock, place_rad: np.ndarray | None) -> Senso
 def _blind(column: Column) -> str:
     """Why the column's values cannot be judged; empty if they can."""
     kind = _kind(column)
+    if kind == "barometer" and column.meaning.axis == "altitude":
+        kind = "height"
     wanders = kind == "" and _wanders(column.value[np.isfinite(column.value)])
     return _UNWATCHED.get(kind, "its level wanders: only its silence is noticed" if wanders else "")
 
@@ -91,7 +93,7 @@ def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray
     """Unit and reason."""
     meaning, value, kind = column.meaning, column.value, _kind(column)
     if meaning.unit:
-        return meaning.unit, "unit in its name"
+        return meaning.unit, "unit in its name or its format"
     match kind:
         case "accelerometer":
             return units.acceleration_unit(group)

@@ -1,105 +1,62 @@
 """Describe an unknown log: which columns are which sensor, in what unit, held or new. Every guess gives its reason."""
 
 import math
-import re
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Callable
+from dataclasses import replace
 
-from sensorfault.logs.clock import Clock, read_clock
-from sensorfault.logs.entries import FileEntry, SensorEntry
-from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY, measurements
-from sensorfault.logs.guess.sensors import guess_sensors
-from sensorfault.logs.guess.time import guess_time
+import numpy as np
+
+from sensorfault.logs.guess.columns import NO_SENSOR, OTHER_TIME, QUALITY
+from sensorfault.logs.guess.look import Guess, look_at
+from sensorfault.logs.guess.naming import joined, short_names, stem_of
 from sensorfault.logs.place import Where, files_of
-from sensorfault.logs.readers.formats import read_tables
-from sensorfault.logs.readers.npy import name_of
-from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
-_ROWS = 500_000  # a guess looks at so many rows from the beginning
+_EXPECTED = (OTHER_TIME, QUALITY, NO_SENSOR)
 _RAW = "_uncalibrated"
 
 
-@dataclass(frozen=True)
-class _Guess:
-    path: Path
-    columns: tuple[str, ...]
-    file: FileEntry
-    clock: Clock
-    sensors: list[SensorEntry]
-
-    @property
-    def stem(self) -> str:
-        """What it is called: its table, or its file where that holds one."""
-        return self.file.table or _stem(self.path)
-
-
-def guess(path: Where) -> VehicleFile:
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
+def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> VehicleFile:
     """Describe a log from its names and values.
+
+    Args:
+        path: a file, a folder, or several files of one drive.
+        tell: hears how much of a large file has been read, 0 to 1.
 
     Raises:
         LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
     """
-    files, guesses, errors = files_of(path), [], []
-    for file in files:
-        try:
-            tables = read_tables(file)
-        except LogError as error:
-            errors.append(error)
-            continue
-        for name, source in tables.items():
-            try:
-                guesses.append(_guess_table(source, name if len(tables) > 1 else None))
-            except LogError as error:
-                errors.append(error if len(tables) == 1 else LogError(f"{error} (table {name})"))
+    files = files_of(path)
+    looked = [look_at(file, tell) for file in files]
+    guesses = [one for look in looked for one in look.guesses]
+    errors = [error for look in looked for error in look.errors]
     if not guesses:
         raise (
             errors[0]
             if len(errors) == 1
             else LogError(f"{path}: none of its {len(errors)} files or tables is a log; the first: {errors[0]}")
         )
-    notes = [f"Left out: {error}" for error in errors]
+    notes = [*(note for look in looked for note in look.notes), *(f"Left out: {error}" for error in errors)]
     _refuse_several_drives(guesses)
     guesses, raw = _calibrated(guesses)
     guesses.sort(key=_octave)
-    names = ["log"] if len(guesses) == 1 else _short_names(guesses)
+    names = (
+        ["log"] if len(guesses) == 1 else short_names([(one.stem, one.path.name, one.file.table) for one in guesses])
+    )
     taken = [sensor.name for one in guesses for sensor in one.sensors]
     sensors = [
-        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else _joined(name, sensor.name))
+        replace(sensor, file=name, name=sensor.name if taken.count(sensor.name) == 1 else joined(name, sensor.name))
         for one, name in zip(guesses, names, strict=True)
         for sensor in one.sensors
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
-    name = _stem(files[0]) if len(files) == 1 else files[0].parent.stem
+    name = stem_of(files[0]) if len(files) == 1 else files[0].parent.stem
     return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
 
 
-def _guess_table(source: Source, table: str | None) -> _Guess:
-    path = source.path
-    head = replace(source, frame=source.frame.head(_ROWS))
-    time, unit, why = guess_time(head)
-    clock = read_clock(head, time, unit)
-    columns, left_out = measurements(head, time, clock)
-    if not columns:
-        raise LogError(
-            f"{path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."
-        )
-    tag = path.with_name(path.name + ".tag")
-    has_tag = tag.is_file() and not clock.is_unix
-    file = FileEntry(
-        path=path.name,
-        time=time,
-        unit=unit,
-        tag=tag.name if has_tag else None,
-        table=table,
-        why=why,
-        left_out=tuple(left_out),
-    )
-    return _Guess(path, tuple(source.frame.columns), file, clock, guess_sensors(head, columns, clock))
-
-
-def _refuse_several_drives(guesses: list[_Guess]) -> None:
+def _refuse_several_drives(guesses: list[Guess]) -> None:
     """Files with the same columns are one log only if their clocks say that they were written at one time."""
     for i, one in enumerate(guesses):
         for other in guesses[:i]:
@@ -113,7 +70,7 @@ def _refuse_several_drives(guesses: list[_Guess]) -> None:
                 )
 
 
-def _calibrated(guesses: list[_Guess]) -> tuple[list[_Guess], list[str]]:
+def _calibrated(guesses: list[Guess]) -> tuple[list[Guess], list[str]]:
     """The files without those that hold another's raw readings: one device must not vouch for itself."""
     known = {one.stem for one in guesses}
     raw = [one for one in guesses if one.stem.removesuffix(_RAW) in known - {one.stem}]
@@ -121,22 +78,24 @@ def _calibrated(guesses: list[_Guess]) -> tuple[list[_Guess], list[str]]:
     return [one for one in guesses if one not in raw], notes
 
 
-def _octave(one: _Guess) -> int:
+def _octave(one: Guess) -> int:
     """Fast files first: where several say the same, the first is the best. Rates within an octave are alike."""
     return round(math.log2(one.clock.period_s))
 
 
-def _missed(guesses: list[_Guess]) -> list[str]:
+def _missed(guesses: list[Guess]) -> list[str]:
     """A sentence for each file with columns left out that a person might look for."""
     said = []
     for one in guesses:
-        out = [f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY)]
+        out = [
+            f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY, NO_SENSOR)
+        ]
         if out:
-            said.append(f"{one.path.name}: columns left out as no measurements: {', '.join(out)}.")
+            said.append(f"{one.called}: columns left out as no measurements: {', '.join(out)}.")
     return said
 
 
-def _untied(guesses: list[_Guess]) -> list[str]:
+def _untied(guesses: list[Guess]) -> list[str]:
     """A sentence for each file whose clock has nothing to do with the others'."""
     tied = [one for one in guesses if one.clock.is_unix or one.file.tag]
     return [
@@ -144,23 +103,3 @@ def _untied(guesses: list[_Guess]) -> list[str]:
         for one in guesses
         if tied and one not in tied
     ]
-
-
-def _joined(file: str, sensor: str) -> str:
-    return file if file.endswith(sensor) or f"_{sensor}_" in f"_{file}_" else f"{file}_{sensor}"
-
-
-def _stem(path: Path) -> str:
-    """A file's name; of arrays, what they measure."""
-    return name_of(path).split("__")[-1] if path.suffix.lower() == ".npy" else path.stem
-
-
-def _short_names(guesses: list[_Guess]) -> list[str]:
-    """Names of files and tables without what they share and without numbers, where they stay apart."""
-    stems = [one.stem for one in guesses]
-    apart = (i for i, letters in enumerate(zip(*stems, strict=False)) if len(set(letters)) > 1)
-    start = stems[0].rfind("_", 0, next(apart, 0)) + 1
-    short = [re.sub(r"\W+", "_", re.sub(r"(_\d+)+$", "", stem[start:])).strip("_").lower() for stem in stems]
-    if len(set(short)) == len(short) and all(short):
-        return short
-    return [re.sub(r"\W+", "_", f"{one.path.name}_{one.file.table or ''}").strip("_").lower() for one in guesses]

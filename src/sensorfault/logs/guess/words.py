@@ -1,6 +1,7 @@
 """What a column's name says: kind of sensor, axis, unit."""
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from sensorfault.logs.units import known, spelled
@@ -23,9 +24,9 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
         ("gyro", r"(^|_)(?P<axis>roll|pitch|yaw)_?(rate|speed)$"),
-        ("gyro", rf"(^|_)(gyros?|gyr|gyroscope|omega|ang(ular)?_?(rate|vel|velocity|speed)|w)_?{_AXIS}$"),
+        ("gyro", rf"(^|_)(gyros?|gyr|gyroscope|omega|twist_angular|ang(ular)?_?(rate|vel|velocity|speed)|w)_?{_AXIS}$"),
         ("accelerometer", rf"(^|_)(a|acc|accel|acceleration|accelerometer|specific_force)_?{_AXIS}$"),
-        ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|compass)_?{_AXIS}$"),
+        ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|magnetic_field|compass)_?{_AXIS}$"),
         ("quaternion", r"(^|_)(q|quat|quaternion|orientation)_?(?P<axis>[0-3wxyz])$"),
         ("attitude", r"(^|_)(?P<axis>roll|pitch)(_of_quaternion)?$|^(?P<alone>phi|theta)$"),
         (
@@ -34,7 +35,7 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
         ),
         ("wheels", r"(^|_)wheel_?speeds?_(?P<axis>[a-z]+(_[a-z]+)*)$"),
         ("airspeed", r"(^|_)(?P<axis>([a-z]+_)?air_?speed(_[a-z]+)?|ias|tas)$"),
-        ("velocity", rf"(^|_)(v|vel|velocity|wind_?speed)_?{_AXIS}$"),
+        ("velocity", rf"(^|_)(v|vel|velocity|twist_linear|wind_?speed)_?{_AXIS}$"),
         ("speed", r"(^|_)(?P<axis>speed|sog|spd|ground_?speed|vel|velocity|wheel_?speed)$"),
         ("steering", r"(^|_)(steer(ing)?|road_?wheel)(_?wheel)?_?(?P<axis>angle)$"),
         ("position", r"(^|_)(?P<axis>lat|latitude|lon|lng|longitude)$"),
@@ -56,12 +57,16 @@ _CHANNEL = {
 _STEM = {"bar": "baro"}  # DataFlash's BarAlt
 _GYRO_AXIS = {"roll": "x", "pitch": "y", "yaw": "z"}
 
+_OF_JOINTS = ("rad", "Nm")  # units of no axes in space, but of an arm's joints
+
 # Units written as the end of a name.
 _UNIT_ENDINGS = (
     ("m_s2", "m/s^2"), ("m_s_2", "m/s^2"), ("mps2", "m/s^2"), ("rad_s", "rad/s"), ("radps", "rad/s"),
     ("deg_s", "deg/s"), ("degps", "deg/s"), ("dps", "deg/s"), ("m_s", "m/s"), ("mps", "m/s"), ("km_h", "km/h"),
     ("kmh", "km/h"), ("kph", "km/h"), ("knots", "kn"), ("rad", "rad"), ("degrees", "deg"), ("deg", "deg"),
-    ("hpa", "hPa"), ("kpa", "kPa"), ("pa", "Pa"), ("celsius", "degC"), ("degc", "degC"), ("mm", "mm"), ("ft", "ft"),
+    ("ga", "gauss"), ("meter", "m"),
+    ("hpa", "hPa"), ("kpa", "kPa"), ("pa", "Pa"), ("celsius", "degC"), ("degc", "degC"),
+    ("mm", "mm"), ("ft", "ft"),
 )  # fmt: skip
 
 
@@ -75,15 +80,31 @@ class Meaning:
     unit: str
 
 
-def read_name(column: str) -> Meaning:
-    """What a column's name says."""
-    plain, unit = _split_unit(column)
-    name = "_".join(_tokens(plain)) or re.sub(r"\W+", "_", column).lower()
-    bare = name
-    for ending, written in _UNIT_ENDINGS:
+def read_name(column: str, unit: str = "", others: Collection[str] = ()) -> Meaning:
+    """What a column's name says; `unit`: what its format says.
+
+    An array's elements may be axes, `gyro_rad[0]` is x, if it has no more than three among the `others`.
+    """
+    element = re.fullmatch(r"(.+)\[([012])\]", column)
+    if element and f"{element[1]}[3]" not in others and unit not in _OF_JOINTS:
+        plain, ending = _without_unit("_".join(_tokens(element[1])))
+        axis = _read(f"{plain}_{'xyz'[int(element[2])]}", unit or ending)
+        if axis.kind not in ("", "quality", "quaternion", "time"):
+            return axis
+    plain, bracket = _split_unit(column)
+    bare, ending = _without_unit("_".join(_tokens(plain)) or re.sub(r"\W+", "_", column).lower())
+    return _read(bare, unit or bracket or ending)
+
+
+def _without_unit(name: str) -> tuple[str, str]:
+    """A name without the unit that it ends with, and the unit."""
+    for ending, unit in _UNIT_ENDINGS:
         if name.endswith("_" + ending):
-            bare, unit = name[: -len(ending) - 1], unit or written
-            break
+            return name[: -len(ending) - 1], unit
+    return name, ""
+
+
+def _read(bare: str, unit: str) -> Meaning:
     if _TIME.search(bare) and not re.search(r"(^|_)(lat|lon)", bare):
         return Meaning("time", bare, "", unit)
     for kind, pattern in _KINDS:
@@ -91,7 +112,8 @@ def read_name(column: str) -> Meaning:
         if match and (kind == "quaternion" or not _QUALITY.search(bare)):
             groups = match.groupdict()
             axis = groups.get("axis") or groups.get("alone") or kind
-            return Meaning(kind, _channel(kind, axis), _stem(bare, match), unit)
+            rate = unit + "/s" if kind == "gyro" and unit in ("rad", "deg") else unit  # PX4 calls rad/s rad
+            return Meaning(kind, _channel(kind, axis), _stem(bare, match), rate)
     if _QUALITY.search(bare):
         return Meaning("quality", bare, "", unit)
     return Meaning(*_by_unit(bare, unit), unit)

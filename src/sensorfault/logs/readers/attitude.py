@@ -7,16 +7,22 @@ import polars as pl
 
 from sensorfault.logs.readers.source import Source
 
-_QUATERNION = tuple(f"q[{i}]" for i in range(4))  # as PX4 writes it: w, x, y, z, from body to north-east-down
+# w, x, y, z, from body to the world: PX4's to north-east-down, ROS's to east-north-up
+_QUATERNIONS = (
+    tuple(f"q[{i}]" for i in range(4)),
+    *(tuple(f"{at}orientation.{part}" for part in "wxyz") for at in ("", "pose.", "pose.pose.")),
+)
 ANGLES = ("roll_of_quaternion [rad]", "pitch_of_quaternion [rad]", "yaw_of_quaternion [rad]")
 
 
 def with_attitude(source: Source) -> Source:
-    """The same file with the angles of q[0] to q[3] as further columns, if it has those."""
+    """The same file with the angles of its quaternion as further columns, if it has one."""
     frame = source.frame
-    if not all(name in frame.columns and frame[name].dtype.is_numeric() for name in _QUATERNION):
+    numbers = {name for name, dtype in frame.schema.items() if dtype.is_numeric()}
+    names = next((names for names in _QUATERNIONS if numbers.issuperset(names)), None)
+    if names is None:
         return source
-    w, x, y, z = (frame[name].cast(pl.Float64).to_numpy() for name in _QUATERNION)
+    w, x, y, z = (frame[name].cast(pl.Float64).to_numpy() for name in names)
     # roll = atan2(2(wx + yz), 1 - 2(x² + y²)), pitch = asin 2(wy - zx), yaw = atan2(2(wz + xy), 1 - 2(y² + z²))
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))

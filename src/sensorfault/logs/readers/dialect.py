@@ -97,8 +97,8 @@ def _with_header(
     above = [line.lstrip()[1:] for line in lines[:first] if line.strip()]
     if _is_header(cells[first]) and len(cells[first]) <= width:
         names, start = cells[first], first + 1
-    elif above and len(dialect.split(above[-1])) == width and _is_header(dialect.split(above[-1])):
-        names, start = dialect.split(above[-1]), first  # "%time,x,y": the header is a comment
+    elif above and (commented := _above(dialect, above[-1], width)):
+        names, start = commented, first
     elif len(cells[first]) < width and len(table) > 1:
         start, first_cut = first + 1, True  # recording began in the middle of a line
     else:
@@ -110,6 +110,14 @@ def _with_header(
         raise LogError(f"{path}: there is a header but no row below it; name a log with rows.")
     comma = dialect.delimiter != "," and any("," in cell and is_number(cell) for cell in row)
     return Dialect(dialect.delimiter, _unique(names), start, comma, dialect.comment, headerless, first_cut)
+
+
+def _above(dialect: Dialect, line: str, width: int) -> list[str]:
+    """The names in a comment above the rows: "%time,x,y", or "# Time [s]    range [m]", of words with blanks inside."""
+    for cells in (dialect.split(line), re.split(r"\t|\s{2,}", line.strip())):
+        if len(cells) == width and _is_header(cells):
+            return cells
+    return []
 
 
 def _is_header(cells: list[str]) -> bool:

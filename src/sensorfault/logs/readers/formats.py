@@ -1,64 +1,177 @@
-"""Which reader opens which file."""
+"""Which reader opens which file. A new format is one more line in FORMATS."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from functools import lru_cache, partial
 from pathlib import Path
 
+import numpy as np
+
 from sensorfault.logs.readers.attitude import with_attitude
+from sensorfault.logs.readers.bag1 import read_bag1
+from sensorfault.logs.readers.bag2 import first_part, read_bag2
+from sensorfault.logs.readers.can_bus import read_can
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
+from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
+from sensorfault.logs.readers.gnss.leader import observations_beside
+from sensorfault.logs.readers.gnss.librsf import looks_librsf, read_librsf
+from sensorfault.logs.readers.gnss.nmea import looks_nmea, read_nmea
+from sensorfault.logs.readers.gnss.rinex import looks_rinex
+from sensorfault.logs.readers.gnss.rinex_nav import read_places
+from sensorfault.logs.readers.gnss.rinex_obs import read_obs
+from sensorfault.logs.readers.gnss.smartloc import looks_smartloc, read_smartloc
+from sensorfault.logs.readers.gnss.sp3 import read_sp3
+from sensorfault.logs.readers.gnss.ubx import read_ubx
+from sensorfault.logs.readers.gzipped import head_of, inner, is_packed, read_unpacked
 from sensorfault.logs.readers.mat import read_mat
-from sensorfault.logs.readers.npy import read_npy
+from sensorfault.logs.readers.mavlink import read_tlog
+from sensorfault.logs.readers.mcap import read_mcap
+from sensorfault.logs.readers.mdf import looks_mdf, read_mdf
+from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet
 from sensorfault.logs.readers.rtklib import read_pos
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
+from sensorfault.logs.readers.ulog import read_ulog
+from sensorfault.logs.readers.utias import looks_utias, read_utias
 from sensorfault.logs.table import LogError
 
-READERS: dict[str, Callable[[Path], Source]] = {
-    ".csv": read_csv,
-    ".tsv": read_csv,
-    ".txt": read_csv,
-    ".dat": read_csv,
-    ".parquet": read_parquet,
-    ".pos": read_pos,
-    ".npy": read_npy,
-}
+_HEAD_BYTES = 4096
 
-# Formats whose files hold several tables, each with a clock of its own.
-OF_TABLES: dict[str, Callable[[Path], dict[str, Source]]] = {".mat": read_mat, ".bin": read_dataflash}
-SUFFIXES = (*READERS, *OF_TABLES)
+
+def _itself(path: Path) -> Path:
+    return path
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of log file.
+
+    `names`: what its files are called, `*.csv`, in lower case. `read`: a file -> its tables, as far as it can be read.
+    `looks`: whether a file that begins so (4096 bytes) is one, where several formats call their files alike; the first
+    that says so takes it, else the first that has no `looks`. `leader`: of files that only together are one log, the
+    one that stands for them.
+    """
+
+    title: str
+    names: tuple[str, ...]
+    read: Callable[[Path, Ask], Tables]
+    looks: Callable[[bytes], bool] | None = None
+    leader: Callable[[Path], Path] = _itself
+
+    def may_be(self, path: Path) -> bool:
+        """Whether its files are called so."""
+        return any(fnmatchcase(inner(path).name.lower(), name) for name in self.names)
+
+
+def _one(read: Callable[[Path], Source]) -> Callable[[Path, Ask], Tables]:
+    """The reader of a format with one table a file."""
+    return lambda path, ask: {"": read(path)}
+
+
+def _once(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
+    """The same reader, which remembers the last file: first one looks at what it holds, then one takes it."""
+
+    @lru_cache(maxsize=1)
+    def remembered(path: Path, changed_ns: int, size: int, ask: Ask) -> Tables:
+        return read(path, ask)
+
+    def reader(path: Path, ask: Ask) -> Tables:
+        stat = path.stat()
+        return remembered(path, stat.st_mtime_ns, stat.st_size, ask)
+
+    return reader
+
+
+FORMATS = (
+    Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), _one(read_csv)),
+    Format("libRSF measurements", ("*.txt",), _once(read_librsf), looks_librsf),
+    Format("smartLoc measurements", ("*.csv",), _once(read_smartloc), looks_smartloc),
+    Format("UTIAS measurements", ("*.dat",), _one(read_utias), looks_utias),
+    Format("Parquet", ("*.parquet",), _one(read_parquet)),
+    Format("RTKLIB solution", ("*.pos",), _one(read_pos)),
+    Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
+    Format("MATLAB", ("*.mat",), _once(read_mat)),
+    Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
+    Format("ROS 1 bag", ("*.bag",), _once(read_bag1)),
+    Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part),
+    Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part),
+    Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
+    Format("ArduPilot DataFlash text", ("*.log",), _once(read_dataflash_text), looks_dataflash_text),
+    Format("MAVLink telemetry", ("*.tlog",), _once(read_tlog)),
+    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), _once(read_mdf), looks_mdf),
+    Format("CAN recording", ("*.blf", "*.asc"), _once(read_can)),
+    Format("u-blox", ("*.ubx",), _once(read_ubx)),
+    Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
+    Format("RINEX observations", ("*.obs", "*.rnx", "*.[0-9][0-9]o"), _once(_one(read_obs)), partial(looks_rinex, "O")),
+    Format(
+        "RINEX navigation",
+        ("*.nav", "*.rnx", "*.[0-9][0-9][nglp]"),
+        _once(_one(read_places)),
+        partial(looks_rinex, "NG"),
+        observations_beside,
+    ),
+    Format("SP3 orbits", ("*.sp3",), _once(_one(read_sp3)), leader=observations_beside),
+)
+SUFFIXES = tuple(dict.fromkeys(name.removeprefix("*") for one in FORMATS for name in one.names))
+
+
+def format_of(path: Path) -> Format | None:
+    """The format of a file, by its name and, where that does not tell, its beginning.
+
+    Raises:
+        OSError: the beginning is needed and cannot be read.
+    """
+    named = [one for one in FORMATS if one.may_be(path)]
+    if len(named) < 2:
+        return named[0] if named else None
+    head = head_of(path, _HEAD_BYTES)
+    sure = [one for one in named if one.looks is not None and one.looks(head)]
+    return next(iter([*sure, *(one for one in named if one.looks is None), *named]))
 
 
 def read_source(path: Path, table: str | None = None) -> Source:
     """One table's columns; `table` says which, where the file holds several.
 
     Raises:
-        LogError: no such file or table, no reader for its suffix, or the reader cannot read it.
+        LogError: no such file or table, no reader for its name, or the reader cannot read it.
     """
-    tables = read_tables(path)
-    if table is None and len(tables) == 1:
-        return next(iter(tables.values()))
-    if table not in tables:
-        named = ", ".join(name for name in tables if name)
-        if not named:
-            raise LogError(f"{path}: this file is one table; take the key 'table' out of vehicle.toml.")
-        what = "it holds several tables" if table is None else f"there is no table '{table}' in it"
-        raise LogError(f'{path}: {what}; write table = "..." with one of {named}.')
-    return tables[table]
+    return take_table(path, read_tables(path, Ask(None if table is None else frozenset({table}))), table)
 
 
-def read_tables(path: Path) -> dict[str, Source]:
-    """Every table of a file; of a format with one table a file it has no name.
+def take_table(path: Path, tables: Tables, table: str | None) -> Source:
+    """One of the tables that were read from a file.
 
     Raises:
-        LogError: no such file, no reader for its suffix, or the reader cannot read it.
+        LogError: no such table, or several and none is named.
+    """
+    if table is None and len(tables) == 1:
+        return next(iter(tables.values()))
+    if table in tables:
+        return tables[table]
+    named = ", ".join(name for name in read_tables(path) if name)
+    if not named:
+        raise LogError(f"{path}: this file is one table; take the key 'table' out of vehicle.toml.")
+    what = "it holds several tables" if table is None else f"there is no table '{table}' in it"
+    raise LogError(f'{path}: {what}; write table = "..." with one of {named}.')
+
+
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
+def read_tables(path: Path, ask: Ask = ALL) -> Tables:
+    """The tables of a file that are asked for and there; of a format with one table a file it has no name.
+
+    Raises:
+        LogError: no such file, no reader for its name, or the reader cannot read it.
     """
     if not path.exists():
         raise LogError(f"{path}: there is no such file; look at the path.")
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {', '.join(SUFFIXES)}.")
     try:
-        tables = OF_TABLES[suffix](path) if suffix in OF_TABLES else {"": READERS[suffix](path)}
+        form = format_of(path)
+        if form is None:
+            known = ", ".join(SUFFIXES)
+            raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {known}.")
+        tables = read_unpacked(path, lambda file: form.read(file, ask)) if is_packed(path) else form.read(path, ask)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
-    return {name: with_attitude(source) for name, source in tables.items()}
+    return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}

@@ -1,68 +1,74 @@
 """MATLAB `.mat` files: a structure of vectors of one length is a table, and so are the vectors beside it."""
 
+import struct
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.apart import load_apart, reason
+from sensorfault.logs.readers.mat_load import VERSION_7_3, load
+from sensorfault.logs.readers.native import native
+from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
 
+_HEAD, _TAG = 128, struct.Struct("<II")
+_PACKED = 15  # miCOMPRESSED
 _OWN = "variables"  # the table of vectors that stand in no structure
-_NUMBERS = "biuf"  # numpy's letters for truths, whole numbers and floats
 
 
-def read_mat(path: Path) -> dict[str, Source]:
+def read_mat(path: Path, ask: Ask) -> Tables:
     """Every table in the file, by the name of its structure. Functions and objects are left alone.
 
     Raises:
         LogError: not a whole MATLAB file, one of version 7.3 (HDF5), or no vectors of numbers in it.
     """
-    found = _variables(path)
-    structures = {name: vars(one) for name, one in found.items() if hasattr(one, "_fieldnames")}
-    structures[_OWN] = {name: one for name, one in found.items() if name not in structures}
-    tables = {name: _table(path, fields) for name, fields in structures.items()}
+    tables = {name or _OWN: _table(path, vectors) for name, vectors in _structures(path).items()}
     whole = {name: table for name, table in tables.items() if table is not None}
     if not whole:
         raise LogError(f"{path}: no vectors of numbers of one length; save a structure of them, with one for the time.")
     return whole
 
 
-def _variables(path: Path) -> dict[str, Any]:
-    from scipy.io import loadmat  # lazily: half a second that only this format needs
-
+def _structures(path: Path) -> dict[str, dict[str, np.ndarray]]:
+    """What is packed (version 7, MATLAB's default) carries checksums: all else is read where damage does no harm."""
     try:
-        found = loadmat(path, squeeze_me=True, struct_as_record=False)
-    except NotImplementedError:
-        raise LogError(f"{path}: this is MATLAB's version 7.3; save it again with `save(..., '-v7')`.") from None
+        return (load(str(path)) if _all_packed(path) else load_apart("mat_load", path)).vectors
     except Exception as error:  # a damaged file fails in as many ways as it can be damaged
         if isinstance(error, OSError) and error.errno is not None:
             raise  # no fault of the content
-        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
-        raise LogError(f"{path}: not a whole MATLAB file ({reason}); save it again with `save(..., '-v7')`.") from None
-    return {name: one for name, one in found.items() if not name.startswith("__")}
+        why = reason(error)
+        what = "this is MATLAB's version 7.3" if why == VERSION_7_3 else f"not a whole MATLAB file ({why})"
+        raise LogError(f"{path}: {what}; save it again with `save(..., '-v7')`.") from None
 
 
-def _table(path: Path, fields: dict[str, Any]) -> Source | None:
+def _all_packed(path: Path) -> bool:
+    """Whether each variable of the file is packed."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        if file.read(_HEAD)[126:] != b"IM":
+            return False
+        at = _HEAD
+        while at + _TAG.size <= size:
+            file.seek(at)
+            kind, length = _TAG.unpack(file.read(_TAG.size))
+            if kind != _PACKED:
+                return False
+            at += _TAG.size + length
+    return at == size
+
+
+def _table(path: Path, vectors: dict[str, np.ndarray]) -> Source | None:
     """The vectors of the usual length as columns."""
-    vectors = {name: np.asarray(one) for name, one in fields.items() if not name.startswith("_")}
-    vectors = {name: one for name, one in vectors.items() if one.ndim == 1 and one.dtype.kind in _NUMBERS}
     lengths = Counter(len(one) for one in vectors.values() if len(one) > 1)
     if not lengths:
         return None
     rows = lengths.most_common(1)[0][0]
-    columns = {name: _column(one) for name, one in vectors.items() if len(one) == rows}
+    columns = {name: native(one) for name, one in vectors.items() if len(one) == rows}
     others = [name for name, one in vectors.items() if len(one) not in (rows, 1)]
     said = (
         f"{path.name}: {counted(len(others), 'vector')} of another length than {rows} left out: {', '.join(others)}.",
     )
     return Source(path, pl.DataFrame(columns), notes=said if others else ())
-
-
-def _column(vector: np.ndarray) -> np.ndarray:
-    """Native float64, or int64 where a float might round."""
-    wide = np.int64 if vector.dtype.kind in "iu" and vector.dtype.itemsize == 8 else np.float64
-    return np.ascontiguousarray(vector, dtype=wide)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.npy_columns import columns_of
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
@@ -48,7 +49,7 @@ def read_npy(path: Path) -> Source:
         width = None if value.ndim == 1 else value.shape[1]
         for i, name in enumerate(columns_of(_word(file, path, len(values)), width, alone=len(values) == 1)):
             columns[name] = value if value.ndim == 1 else value[:, i]
-    frame = pl.DataFrame({name: _series(name, column) for name, column in columns.items()})
+    frame = pl.DataFrame({name: pl.Series(name, native(column), nan_to_null=False) for name, column in columns.items()})
     return Source(path, frame, time=path.stem)
 
 
@@ -93,15 +94,11 @@ def _array(path: Path) -> np.ndarray:
     """The array in a file, mapped, not read."""
     try:
         array: np.ndarray = np.lib.format.open_memmap(path, mode="r")  # refuses objects: nothing is unpickled
-    except ValueError as error:
-        reason = str(error).splitlines()[0].rstrip(".")
+    except Exception as error:  # a damaged header fails in as many ways as it can be damaged
+        if isinstance(error, OSError) and error.errno is not None:
+            raise  # no fault of the content
+        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
         raise LogError(f"{path}: not a whole array of numbers ({reason}); save it again with numpy.save.") from None
     if array.dtype.kind not in _NUMBERS or not array.ndim or not array.size:
         raise LogError(f"{path}: no table of numbers; save one with numpy.save: rows, or rows and columns.")
     return array
-
-
-def _series(name: str, column: np.ndarray) -> pl.Series:
-    """Native float64, or int64 where a float might round."""
-    wide = np.int64 if column.dtype.kind in "iu" and column.dtype.itemsize == 8 else np.float64
-    return pl.Series(name, np.ascontiguousarray(column, dtype=wide), nan_to_null=False)

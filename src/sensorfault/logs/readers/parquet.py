@@ -4,6 +4,7 @@ from pathlib import Path
 
 import polars as pl
 
+from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
@@ -15,8 +16,9 @@ def read_parquet(path: Path) -> Source:
         LogError: not a Parquet file, or nothing in it.
     """
     try:
-        frame = pl.read_parquet(path, glob=False)
-    except (pl.exceptions.PolarsError, OSError) as error:
+        with quiet():
+            frame = pl.read_parquet(path, glob=False)
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
         reason = str(error).splitlines()[0]
         raise LogError(f"{path}: this is not a readable Parquet file ({reason}); export the log again.") from None
     flat = [name for name, dtype in frame.schema.items() if not dtype.is_nested()]

@@ -1,19 +1,53 @@
 """What a reader of one format hands on: the file's columns as they stand in it."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import polars as pl
 
+from sensorfault.logs.entries import SensorEntry
 from sensorfault.logs.table import LogError
+
+
+@dataclass(frozen=True)
+class Damage:
+    """A part of a file that cannot be read. `where`: a byte, a line or a time; `kept`: what was read all the same."""
+
+    what: str
+    where: str
+    kept: str = "what came before was read"
+
+    def sentence(self, path: Path) -> str:
+        """`flight.ulg: the file breaks off at byte 4711; what came before was read.`"""
+        return f"{path.name}: {self.what} at {self.where}; {self.kept}."
+
+
+@dataclass(frozen=True)
+class Ask:
+    """What a reader is asked. `tables`: those that are needed, None for all. `tell`: hears the share read, 0 to 1."""
+
+    tables: frozenset[str] | None = None
+    tell: Callable[[float], None] = field(default=lambda share: None, compare=False)
+
+    def wants(self, table: str) -> bool:
+        """Whether a table need be read."""
+        return self.tables is None or table in self.tables
+
+
+ALL = Ask()
 
 
 @dataclass(frozen=True)
 class Source:
     """One file's columns, untouched: numbers where every cell is a number, text elsewhere.
 
+    `table`: which one of its file's, where that holds several.
     `time` and `unit`: the time column and its unit where the format fixes them (RTKLIB does, CSV does not).
+    `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
+    `units`: the unit of each column whose format says it, spelled as in units.py.
+    `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
 
     path: Path
@@ -22,6 +56,15 @@ class Source:
     unit: str | None = None
     first_line: int = 0
     notes: tuple[str, ...] = ()
+    damage: tuple[Damage, ...] = ()
+    sensors: tuple[SensorEntry, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+    table: str = ""
+
+    @property
+    def name(self) -> str:
+        """What a sentence calls it: its file, and its table where that holds several."""
+        return f"{self.path.name} ({self.table})" if self.table else self.path.name
 
     def place(self, row: int) -> str:
         """Where a row stands in the file, for a person."""
@@ -58,3 +101,14 @@ class Source:
                 "mend the cell, or leave the column out of vehicle.toml."
             )
         return number
+
+
+Tables = dict[str, Source]  # the tables of one file by name; a format with one table a file calls it ""
+
+
+def told(tables: Tables, notes: Iterable[str], damage: Iterable[Damage] = ()) -> Tables:
+    """The same tables, and what their file's reader has to say of it."""
+    said, broken = tuple(notes), tuple(damage)
+    return {
+        name: replace(one, notes=(*one.notes, *said), damage=(*one.damage, *broken)) for name, one in tables.items()
+    }

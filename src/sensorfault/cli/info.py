@@ -1,0 +1,75 @@
+"""`sensorfault info`: what a log holds, and which methods can watch it."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from sensorfault.cli import options, show, work
+
+if TYPE_CHECKING:
+    from sensorfault.logs import Log
+    from sensorfault.logs.summary import SensorSummary
+
+_COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at", "held %")
+
+
+@click.command("info")
+@options.log_argument
+@options.vehicle_option
+@options.json_option
+def command(log: Path, vehicle: Path | None, json_path: str | None) -> None:
+    """Say what a log holds: sensors, rates, gaps, held values; which methods can watch it, and why others cannot.
+
+    Nothing is fitted: a method that seems to apply may still find, when it is fitted, that the log has too little of
+    something.
+    """
+    from dataclasses import asdict
+
+    from sensorfault.logs.summary import summarise
+
+    work.check_outputs([json_path], [log, vehicle])
+    table = work.read_log(log, vehicle)
+    sensors = summarise(table)
+    applies, lacking, without = _methods(table)
+    answer = json_path != "-"
+    show.table(f"Sensors of {table.name}", _COLUMNS, [_row(one) for one in sensors], answer, right=("gaps", "at"))
+    rows = [(name, "yes" + (f", without {', '.join(without[name])}" if without[name] else "")) for name in applies]
+    rows += [(name, f"no: {reason}") for name, reason in lacking.items()]
+    show.table("Methods", ("method", "applies"), rows, answer)
+    told = {
+        "log": table.name,
+        "duration_s": table.duration_s,
+        "tick_s": table.period_s,
+        "rows": len(table),
+        "epoch_s": table.epoch_s,
+        "sensors": [asdict(sensor) for sensor in sensors],
+        "notes": list(table.notes),
+        "damage": list(table.damage),
+        "applies": {name: {"without": without[name]} for name in applies},
+        "does_not_apply": lacking,
+    }
+    show.write_json(json_path, told)
+
+
+def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[str, str]]]:
+    """Methods that the log allows, reasons against the others, and parts that the first have to do without."""
+    from sensorfault.methods.catalog import METHODS
+
+    lacking = {name: reason for name, recipe in METHODS.items() if (reason := recipe.lacks(table))}
+    applies = [name for name in METHODS if name not in lacking]
+    return applies, lacking, {name: METHODS[name].lacking_parts(table) for name in applies}
+
+
+def _row(sensor: "SensorSummary") -> tuple[str, ...]:
+    units = zip(sensor.channels, sensor.units, strict=True)
+    return (
+        sensor.name,
+        ", ".join(f"{channel} [{unit}]" if unit else channel for channel, unit in units),
+        show.number(sensor.rate_hz),
+        str(sensor.measurements),
+        str(sensor.gaps),
+        show.number(sensor.longest_gap_s),
+        "" if sensor.gap_at_s is None else show.clock(sensor.gap_at_s),
+        show.percent(sensor.held) if sensor.held else "",
+    )

@@ -1,0 +1,121 @@
+"""What one file of a log holds: which of its tables are sensors, and what."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sensorfault.logs.clock import Clock, read_clock
+from sensorfault.logs.entries import FileEntry, SensorEntry
+from sensorfault.logs.guess.columns import measurements
+from sensorfault.logs.guess.naming import stem_of
+from sensorfault.logs.guess.sensors import guess_sensors
+from sensorfault.logs.guess.stock import Fields, recognised
+from sensorfault.logs.guess.time import guess_time
+from sensorfault.logs.readers.formats import read_tables
+from sensorfault.logs.readers.source import Ask, Source, Tables
+from sensorfault.logs.table import LogError
+
+_COMMAND = re.compile(r"(^|[_/])(cmd|command|setpoint|goal|target|desired)([_/]|$)", re.IGNORECASE)
+_ROWS = 500_000  # a guess looks at so many rows from the beginning
+
+
+@dataclass(frozen=True)
+class Guess:
+    """One table: its clock and the sensors in it."""
+
+    path: Path
+    columns: tuple[str, ...]
+    file: FileEntry
+    clock: Clock
+    sensors: list[SensorEntry]
+
+    @property
+    def called(self) -> str:
+        """What a sentence calls it: its file, and its table where that holds several."""
+        return f"{self.path.name} ({self.file.table})" if self.file.table else self.path.name
+
+    @property
+    def stem(self) -> str:
+        """What it is called: its table, or its file where that holds one."""
+        return self.file.table or stem_of(self.path)
+
+
+@dataclass(frozen=True)
+class Look:
+    """What one file holds: tables that are sensors, why others are none, and what a person should know of it."""
+
+    guesses: list[Guess]
+    errors: list[LogError]
+    notes: list[str]
+
+
+def look_at(file: Path, tell: Callable[[float], None]) -> Look:
+    """What one file's tables are; of an autopilot's, those that are sensors."""
+    try:
+        tables = read_tables(file, Ask(tell=tell))
+    except LogError as error:
+        return Look([], [error], [])
+    said = [said for one in tables.values() for said in (*(broken.sentence(file) for broken in one.damage), *one.notes)]
+    stock = recognised(tables) if len(tables) > 1 else None
+    if stock is not None:
+        fields = stock.fields(tables)
+        guesses, errors = _guess_tables({name: tables[name] for name in fields}, fields)
+        if guesses:
+            used = [one.file.table or "" for one in guesses]
+            said.append(
+                f"{file.name}: a log of {stock.name}; sensors are in {', '.join(used)}. No sensors, so left out: "
+                f"{', '.join(sorted(set(tables) - set(used)))}."
+            )
+            return Look(guesses, errors, list(dict.fromkeys(said)))
+    commands = [name for name in tables if _COMMAND.search(name)]
+    if commands:
+        said.append(f"{file.name}: commands, no measurements, so left out: {', '.join(commands)}.")
+    guesses, errors = _guess_tables({name: one for name, one in tables.items() if name not in commands}, None)
+    return Look(guesses, errors, list(dict.fromkeys(said)))
+
+
+def _guess_tables(tables: Tables, fields: Mapping[str, Fields] | None) -> tuple[list[Guess], list[LogError]]:
+    """What the tables of one file are, and why some are nothing."""
+    guesses, errors = [], []
+    for name, source in tables.items():
+        try:
+            guesses.append(_guess_table(source, name or None, None if fields is None else fields[name]))
+        except LogError as error:
+            errors.append(LogError(f"{error} (table {name})") if name else error)
+    return guesses, errors
+
+
+def _guess_table(source: Source, table: str | None, fields: Fields | None) -> Guess:
+    """`fields`: what they mean, where that is known."""
+    path = source.path
+    head = replace(source, frame=source.frame.head(_ROWS))
+    time, unit, why = guess_time(head)
+    clock = read_clock(head, time, unit)
+    sensors, left_out = _sensors(head, time, clock, fields)
+    tag = path.with_name(path.name + ".tag")
+    has_tag = tag.is_file() and not clock.is_unix
+    file = FileEntry(
+        path=path.name,
+        time=time,
+        unit=unit,
+        tag=tag.name if has_tag else None,
+        table=table,
+        why=why,
+        left_out=tuple(left_out),
+    )
+    return Guess(path, tuple(source.frame.columns), file, clock, sensors)
+
+
+def _sensors(
+    source: Source, time: str, clock: Clock, fields: Fields | None
+) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
+    """The sensors that the format says or the columns look like, and the columns left out with the reason why."""
+    if source.sensors:
+        return list(source.sensors), []
+    columns, left_out = measurements(source, time, clock, fields)
+    if not columns:
+        raise LogError(
+            f"{source.path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."
+        )
+    return guess_sensors(source, columns, clock), left_out

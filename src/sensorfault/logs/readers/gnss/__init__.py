@@ -1,0 +1,1 @@
+"""Raw satellite navigation: pseudoranges, and where the satellites were."""

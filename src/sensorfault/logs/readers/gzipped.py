@@ -1,0 +1,89 @@
+"""Files packed by gzip: unpacked beside nothing of the user's, read as what they are, called by their own name."""
+
+import tempfile
+import zlib
+from collections.abc import Callable
+from dataclasses import replace
+from io import BufferedIOBase, BytesIO
+from pathlib import Path
+
+from sensorfault.logs.readers.source import Damage, Tables, told
+from sensorfault.logs.table import LogError
+
+SUFFIX = ".gz"
+_CHUNK = 1 << 16
+_GZIP = 31  # zlib's number for 32 kB of window and gzip's own head and tail
+
+
+def is_packed(path: Path) -> bool:
+    """Whether its name says so."""
+    return path.suffix.lower() == SUFFIX
+
+
+def inner(path: Path) -> Path:
+    """What a file is called when it is unpacked."""
+    return path.with_suffix("") if is_packed(path) else path
+
+
+def head_of(path: Path, size: int) -> bytes:
+    """The first bytes of a file, or as many as can be read, of what is packed in it if it is."""
+    if not is_packed(path):
+        with path.open("rb") as file:
+            return file.read(size)
+    plain = BytesIO()
+    _unpack(path, plain, size)
+    return plain.getvalue()[:size]
+
+
+def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
+    """The tables of a packed file. One that breaks off is read as far as it can be unpacked.
+
+    Raises:
+        LogError: not packed by gzip, or what the reader says of what is in it.
+    """
+    damage = []
+    with tempfile.TemporaryDirectory(prefix="sensorfault-") as folder:
+        file = Path(folder) / inner(path).name
+        with file.open("wb") as plain:
+            whole = _unpack(path, plain)
+            if not plain.tell():
+                raise LogError(f"{path}: nothing in this file can be unpacked; pack the log again with gzip.")
+            if not whole:
+                damage.append(Damage("the packed file is damaged or breaks off", f"unpacked byte {plain.tell()}"))
+        try:
+            tables = read(file)
+        except LogError as error:
+            raise LogError(str(error).replace(str(file), str(path))) from None
+    own = {name: replace(source, path=path) for name, source in tables.items()}
+    return told(own, (), damage)
+
+
+def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:
+    """Unpack as far as it goes, or until `most` bytes; whether all of it is sound.
+
+    Python's own gzip gives nothing of the block in which the damage is.
+    """
+    with path.open("rb") as packed:
+        unpacker = zlib.decompressobj(_GZIP)
+        while chunk := packed.read(_CHUNK):
+            while chunk:
+                before = unpacker.copy()
+                try:
+                    plain.write(unpacker.decompress(chunk))
+                except zlib.error:
+                    _byte_by_byte(before, chunk, plain)
+                    return False
+                chunk = unpacker.unused_data if unpacker.eof else b""
+                if chunk:  # another file is packed behind it
+                    unpacker = zlib.decompressobj(_GZIP)
+            if most is not None and plain.tell() >= most:
+                return True
+        return unpacker.eof
+
+
+def _byte_by_byte(unpacker: "zlib._Decompress", chunk: bytes, plain: BufferedIOBase) -> None:
+    for i in range(len(chunk)):
+        try:
+            plain.write(unpacker.decompress(chunk[i : i + 1]))
+        except zlib.error:
+            return

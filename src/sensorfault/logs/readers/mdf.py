@@ -1,0 +1,47 @@
+"""ASAM MDF measurement files (`.mf4`, `.mdf`): each channel group is a table with its own clock."""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import polars as pl
+
+from sensorfault.logs.phrase import counted
+from sensorfault.logs.readers.apart import load_apart
+from sensorfault.logs.readers.extra import missing
+from sensorfault.logs.readers.mdf_load import TIME
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.table import LogError
+from sensorfault.logs.units import known, spelled
+
+
+def read_mdf(path: Path, ask: Ask) -> Tables:
+    """Every channel group with two rows or more and numbers in it, on Unix time. A group that is damaged is left out.
+
+    Raises:
+        LogError: no MDF file, or no such group in it; or asammdf is not installed.
+    """
+    if find_spec("asammdf") is None:
+        raise missing(path, "asammdf", "bus")
+    try:
+        loaded = load_apart("mdf_load", path)
+    except ValueError as error:
+        raise LogError(f"{path}: not a whole MDF file ({error}); export it again.") from None
+    lost, others = loaded.told["lost"], loaded.told["others"]
+    if not loaded.vectors:
+        raise LogError(f"{path}: no channel group with a clock and numbers in this MDF file; export it again.")
+    damage = [
+        Damage(f"a channel group cannot be read ({why})", f"'{name}'", "the others were read") for name, why in lost
+    ]
+    said = [f"{path.name}: {counted(others, 'channel')} of texts or arrays left out."] if others else []
+    tables = {}
+    for name, columns in loaded.vectors.items():
+        if ask.wants(name):
+            written = loaded.told["units"][name].items()
+            units = {column: spelled(unit) for column, unit in written if known(unit)}
+            tables[name] = Source(path, pl.DataFrame(columns), TIME, "s", units=units)
+    return told(tables, said, damage)
+
+
+def looks_mdf(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return head.startswith((b"MDF ", b"UnFinMF "))

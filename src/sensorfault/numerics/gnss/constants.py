@@ -1,0 +1,19 @@
+"""What the interface documents fix."""
+
+LIGHT_M_S = 299_792_458.0  # c
+EARTH_RATE_RAD_S = 7.292_115_146_7e-5  # Ω̇e of WGS-84 (IS-GPS-200, table 20-IV)
+EARTH_RATE = {  # by which each system's orbits are told: BeiDou's, taken for GPS's, is 24 m off at the end of a week
+    "G": EARTH_RATE_RAD_S,
+    "J": EARTH_RATE_RAD_S,
+    "E": EARTH_RATE_RAD_S,  # OS SIS ICD, table 68
+    "C": 7.292_115_0e-5,  # BDS-SIS-ICD-B1I, table 5-11
+}
+EARTH_MU = {  # gravitational constant times the mass of the earth, as each system's document has it [m³/s²]
+    "G": 3.986_005e14,  # GPS: IS-GPS-200, table 20-IV
+    "J": 3.986_005e14,  # QZSS
+    "E": 3.986_004_418e14,  # Galileo: OS SIS ICD, table 68
+    "C": 3.986_004_418e14,  # BeiDou: BDS-SIS-ICD-B1I, table 5-11
+}
+L1_HZ = 1_575.42e6
+"""The frequency that GPS and Galileo share, and that Klobuchar's delay is told for."""
+WEEK_S = 604_800.0

@@ -1,0 +1,125 @@
+"""Events written for other programs, and read back by libraries that share no code with the writers."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+from logs.written_ros import mcap as recorded
+from sensorfault.events import Event
+from sensorfault.export import write_events
+from sensorfault.logs import Channel, Log, LogError, Sensor
+
+EPOCH_S = 1_700_000_000.25
+EVENTS = (
+    Event(1.0, 2.0, "sensor", "gyro", "x", "bias", 9.0, 8.0, "drone"),
+    Event(1.5, None, "sensor", "gnss", None, "miss", 1.5, 0.6, "drone"),
+    Event(2.0, 2.0, "motion", None, None, "unknown", 4.0, 3.0, "car"),
+    Event(3.0, 3.5, "sensor", None, None, "jam", None, None, "car"),
+)
+
+
+def log(epoch_s: float | None = EPOCH_S) -> Log:
+    time = np.arange(50) / 10
+    value = np.ones((50, 2))
+    channels = (Channel("x", "gyro", "rad/s"), Channel("altitude", "gnss", "m"))
+    sensors = (Sensor("gyro", 0.1), Sensor("gnss", 0.1))
+    return Log(time, value, np.ones((50, 2), bool), channels, sensors, epoch_s=epoch_s)
+
+
+def test_json_lines(tmp_path: Path) -> None:
+    write_events(EVENTS, log(), tmp_path / "events.jsonl")
+    lines = (tmp_path / "events.jsonl").read_text().splitlines()
+    assert [json.loads(line) for line in lines] == [event.as_dict() for event in EVENTS]
+
+
+def test_csv_and_parquet(tmp_path: Path) -> None:
+    write_events(EVENTS, log(), tmp_path / "events.csv")
+    rows = list(csv.DictReader((tmp_path / "events.csv").read_text().splitlines()))
+    assert [row["kind"] for row in rows] == ["bias", "miss", "unknown", "jam"]
+    assert rows[1]["end_s"] == rows[1]["channel"] == ""
+    write_events(EVENTS, log(), tmp_path / "events.parquet")
+    assert pl.read_parquet(tmp_path / "events.parquet").rows(named=True) == [event.as_dict() for event in EVENTS]
+
+
+@pytest.mark.parametrize("suffix", [".jsonl", ".csv", ".parquet", ".mcap", ".bag", ""])
+def test_no_events_are_a_file_too(tmp_path: Path, suffix: str) -> None:
+    write_events((), log(), tmp_path / f"events{suffix}")
+    assert (tmp_path / f"events{suffix}").exists()
+    assert [path.name for path in tmp_path.iterdir()] == [f"events{suffix}"]
+
+
+def messages(path: Path) -> list[tuple[str, int, bytes]]:
+    from mcap.reader import make_reader
+
+    with path.open("rb") as file:
+        return [(c.topic, m.log_time, m.data) for _, c, m in make_reader(file).iter_messages()]
+
+
+def test_annotations_beside_the_recording(tmp_path: Path) -> None:
+    source = recorded(tmp_path / "drive.mcap")
+    write_events(EVENTS, log(), tmp_path / "told.mcap", source)
+    own = [one for one in messages(tmp_path / "told.mcap") if "/sensorfault" not in one[0]]
+    assert own == messages(source)
+    states = [
+        (at / 1e9 - EPOCH_S, json.loads(raw))
+        for topic, at, raw in messages(tmp_path / "told.mcap")
+        if topic == "/sensorfault/states"
+    ]
+    at = [round(time, 3) for time, _ in states]
+    assert at == [0, 1, 1.5, 2, 2, 2, 3, 3.5]
+    quiet = {"gyro": "ok", "gnss": "ok", "motion": "ok", "unknown": "ok"}
+    assert states[0][1] == quiet
+    assert states[1][1] == {**quiet, "gyro": "bias"}
+    assert states[2][1] == {**quiet, "gyro": "bias", "gnss": "miss"}
+    assert states[-1][1] == {**quiet, "gnss": "miss"}
+    texts = [raw for topic, _, raw in messages(tmp_path / "told.mcap") if topic == "/sensorfault/events"]
+    assert len(texts) == 7
+    assert b"bias on gyro.x begins (score 9, limit 8, drone)" in texts[0]
+
+
+def diagnostics(path: Path) -> list[tuple[float, Any]]:
+    from rosbags.highlevel import AnyReader
+
+    with AnyReader([path]) as reader:
+        return [(ns / 1e9, reader.deserialize(raw, c.msgtype)) for c, ns, raw in reader.messages()]
+
+
+@pytest.mark.parametrize("name", ["events.bag", "events"])
+def test_diagnostic_arrays_in_a_bag(tmp_path: Path, name: str) -> None:
+    write_events(EVENTS, log(), tmp_path / name)
+    told = diagnostics(tmp_path / name)
+    assert len(told) == 7
+    time, first = told[0]
+    assert time == pytest.approx(EPOCH_S + 1)
+    (status,) = first.status
+    assert (status.level, status.name, status.hardware_id) == (2, "sensorfault: gyro.x", "gyro")
+    assert {pair.key: pair.value for pair in status.values}["kind"] == "bias"
+    levels = {(message.status[0].name, message.status[0].level) for _, message in told}
+    assert ("sensorfault: gnss", 2) in levels
+    assert ("sensorfault: gnss", 0) not in levels  # it goes on
+    assert ("sensorfault: vehicle motion", 0) in levels
+
+
+def test_without_a_clock_of_the_world_times_count_from_zero(tmp_path: Path) -> None:
+    write_events(EVENTS, log(None), tmp_path / "events.bag")
+    assert diagnostics(tmp_path / "events.bag")[0][0] == 1.0
+
+
+def test_what_cannot_be_written(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match=r"not as '\.xlsx'; change the name"):
+        write_events(EVENTS, log(), tmp_path / "events.xlsx")
+    (tmp_path / "there").mkdir()
+    with pytest.raises(LogError, match="is there already"):
+        write_events(EVENTS, log(), tmp_path / "there")
+
+
+def test_a_viewer_that_is_not_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sensorfault.export.write.find_spec", lambda name: None)
+    with pytest.raises(LogError, match=r"pip install 'sensorfault\[viewers\]'"):
+        write_events(EVENTS, log(), tmp_path / "events.mcap")
+    assert not list(tmp_path.iterdir())

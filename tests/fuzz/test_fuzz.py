@@ -1,0 +1,38 @@
+"""Each reader on files that are damaged in two hundred ways; `make fuzz` takes ten thousand."""
+
+from pathlib import Path
+
+import pytest
+
+from fuzz.reading import Fuzzed
+from fuzz.small import SMALL
+from sensorfault.logs import read
+from sensorfault.logs.readers.formats import FORMATS, format_of
+
+FILES = 200
+FEWER = {"MDF": 50}  # damage ends its process one time in ten, and asammdf takes a second to come again
+
+
+@pytest.mark.parametrize("title", SMALL)
+def test_a_damaged_file_is_a_log_or_one_sentence(tmp_path: Path, title: str) -> None:
+    fuzzed = Fuzzed(title, tmp_path)
+    files = FEWER.get(title, FILES)
+    wrong = [said for number in range(files) if (said := fuzzed.one(number)) is not None]
+    assert not wrong, "\n".join(wrong[:5])
+    assert fuzzed.read > files / 20  # the damage is such that some still read
+    assert fuzzed.refused > 0
+
+
+@pytest.mark.parametrize("title", SMALL)
+def test_the_sound_file_is_a_log(tmp_path: Path, title: str) -> None:
+    path = SMALL[title](tmp_path)
+    form = format_of(path)
+    assert form is not None
+    assert title.split(",")[0] in (form.title, "gzip")
+    log = read(path)
+    assert len(log) >= 3
+    assert not log.damage
+
+
+def test_every_format_is_fuzzed() -> None:
+    assert {form.title for form in FORMATS} <= {title.split(",")[0] for title in SMALL}
