@@ -28,10 +28,9 @@ def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], lo
     from scipy.optimize import minimize  # lazily: slow to import, and seldom needed
 
     rows = samples(log.time, log.value, log.fresh)
-    cost = jax.jit(lambda q, sigma: _cost(build(q, sigma), rows))
 
     def at(x: Float[np.ndarray, "2"]) -> float:
-        return float(cost(*jnp.exp(jnp.asarray(x))))
+        return float(_cost(build(*jnp.exp(jnp.asarray(x))), rows))
 
     options = {"xatol": 0.03, "fatol": 0.1}
     found = minimize(at, np.log(START), method="Nelder-Mead", bounds=np.log(BOUNDS), options=options)
@@ -39,6 +38,7 @@ def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], lo
     return float(q), float(sigma)
 
 
+@jax.jit
 def _cost(monitor: Monitor, rows: Sample) -> Float[Array, ""]:
     return replay(monitor, monitor.init(), rows, _loss)[1].sum()
 

@@ -65,7 +65,7 @@ class SageHusa(eqx.Module):
         # d = (1 - b) / (1 - b^(k+1)),  R ← (1 - d) R + d (r² - H P Hᵀ)
         d = (1 - self.fading) / (1 - self.fading ** (state.many + 2))
         r = state.r + d * (innovation**2 - predicted - state.r)
-        return _Learned(jnp.where(taken, r, state.r), state.many + taken)
+        return _Learned(jnp.where(taken, r, state.r), state.many + taken.astype(float))
 
 
 class WindowedNoise(eqx.Module):
