@@ -109,17 +109,19 @@ class Cubature(eqx.Module):
         used = used * jnp.where(again, self.repeated, 1.0) + curved
         # P_zz
         s = (seen.dz[:, None, :] * seen.dz[None]).sum(axis=2) + jnp.diag(self.r + curved)
-        to = (jnp.arange(self.channels)[:, None] == jnp.asarray(motion.observed)[None]).astype(float)
+        at = jnp.arange(self.channels)[:, None] == jnp.asarray(motion.observed)[None]
+        to = at.astype(float)
         rest = 1.0 - to.sum(axis=1)
-        mine = to @ (motion.ready(sample) & prior.alive).astype(float) > 0
+        mine = (at & (motion.ready(sample) & prior.alive)[None]).any(axis=1)
+        across = (to[:, :, None] * s[None]).sum(axis=1)  # no product of matrices: it would be a call in a small loop
         residual = Residual(
             time=sample.time,
-            value=to @ innovation,
-            cov=(to[:, None, :] * (to @ s)[None]).sum(axis=2) + jnp.diag(rest),
+            value=_placed(to, innovation),
+            cov=(to[:, None, :] * across[None]).sum(axis=2) + jnp.diag(rest),
             measured=sample.value,
-            expected=jnp.where(mine, to @ jnp.where(prior.alive, seen.expected, 0.0), sample.value),
-            noise=to @ used + rest,
-            valid=to @ there.astype(float) > 0,
+            expected=jnp.where(mine, _placed(to, jnp.where(prior.alive, seen.expected, 0.0)), sample.value),
+            noise=_placed(to, used) + rest,
+            valid=(at & there[None]).any(axis=1),
             born=sample.born,
         )
         return residual, _Work(prior, sample, seen, innovation, predicted, used, there, again)
@@ -150,3 +152,8 @@ class Cubature(eqx.Module):
         mean, root = predict(lambda state: motion.ahead(state, sample, dt), belief.mean, belief.root, q_root)
         spread = jnp.sqrt((root**2).sum(axis=1))
         return belief._replace(mean=mean, root=root, alive=belief.alive & ~motion.lost(mean, spread))
+
+
+def _placed(to: Float[Array, "C M"], each: Float[Array, " M"]) -> Float[Array, " C"]:
+    """One number a measurement, at its channel."""
+    return (to * each[None]).sum(axis=1)
