@@ -15,15 +15,10 @@ from laws.case import Case, limits_learned
 from laws.guests.zoo import zoo
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods import (
-    anfis_cubature,
     ar_predictor,
     bp_autoencoder,
-    chi_square_cubature,
-    cooperative,
     cusum,
-    double_threshold,
     kinematic_observer,
-    logistic_cubature,
     lstm_displacement,
     lstm_predictor,
     mean_pair,
@@ -319,14 +314,17 @@ ZOO = {case.name: case for case in zoo()}
 MOTION = {name: functools.partial(of_motion, name) for name in ("bicycle-kalman", "side-force")}
 DRIFTING = {name: functools.partial(drifting, name) for name in DRIFTS}
 HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS} | {"height-agreement": heights}
+# Their parts are those of another recipe of the same file, with another limit.
+TWINS = {"chi-square-ckf-01", "chi-square-ackf-05", "anfis-cubature-9m"}
 FOLLOWERS = {
-    recipe.name: functools.partial(follower, recipe.name)
-    for recipe in (
-        *chi_square_cubature.RECIPES,
-        *anfis_cubature.RECIPES,
-        double_threshold.RECIPE,
-        logistic_cubature.RECIPE,
-        cooperative.RECIPE,
+    name: functools.partial(follower, name)
+    for name in (
+        "chi-square-ckf-05",
+        "chi-square-ackf-01",
+        "double-threshold",
+        "anfis-cubature",
+        "logistic-cubature",
+        "cooperative",
     )
 }
 ALONE = {
@@ -340,7 +338,7 @@ ALONE = {
     **DRIFTING,
     **FOLLOWERS,
 }
-JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE})
+JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE, *TWINS})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)
 
 
