@@ -7,14 +7,21 @@ from sensorfault.logs.table import Log
 from sensorfault.methods.ranged import GROWTH, Filter, cubature, fitted, followed, model, monitor, on_ranges
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
-from sensorfault.monitor.monitor import Branch
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.residual.cubature import Cubature
 from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.training.session import Session
+from sensorfault.vehicles.underwater import FollowerRoles
 
 
 def limit(far: float) -> float:
     """√χ²(1 - far) with one degree of freedom."""
     return NormalDist().inv_cdf(1 - far / 2)
+
+
+def gate(log: Log, found: FollowerRoles, residual: Cubature, far: float) -> Monitor:
+    """The filter behind the test."""
+    return monitor(log, residual, Branch(Normalised(), on_ranges(log, found, limit(far))))
 
 
 def chi_square(name: str, log: Log, far: float, filter: Filter | None = None, adaptive: bool = False) -> Model:
@@ -25,8 +32,7 @@ def chi_square(name: str, log: Log, far: float, filter: Filter | None = None, ad
     """
     found = followed(name, log)
     own = filter or fitted(log, found, Filter(adaptive=adaptive, growth=GROWTH))
-    branch = Branch(Normalised(), on_ranges(log, found, limit(far)))
-    heard = monitor(log, cubature(log, found, own), branch)
+    heard = gate(log, found, cubature(log, found, own), far)
     return model(name, log, found, heard, ("chi-square",), own, {"false_alarms": far})
 
 

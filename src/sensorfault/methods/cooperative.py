@@ -3,18 +3,21 @@
 from functools import partial
 
 import numpy as np
+from jaxtyping import Float
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.chi_square_cubature import limit
 from sensorfault.methods.ranged import GROWTH, Filter, cubature, fitted, followed, model, monitor, on_ranges
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
-from sensorfault.monitor.monitor import Branch
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.residual.cubature import Cubature
 from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.training.limits import repeat_limit
 from sensorfault.training.session import Session
 from sensorfault.training.tapes import score_tape
+from sensorfault.vehicles.underwater import FollowerRoles
 
 FALSE_ALARMS = 0.01  # of the healthy ranges
 LEAST_RUN = 5.0  # repeats that are no jam yet
@@ -29,7 +32,14 @@ def cooperative(name: str, log: Log, filter: Filter | None = None) -> Model:
     """
     found = followed(name, log)
     own = filter or fitted(log, found, Filter(growth=GROWTH, repeated=REPEATED))
-    residual, repeats = cubature(log, found, own), Repeats(len(log.channels))
+    heard, longest = gates(log, found, cubature(log, found, own))
+    told = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
+    return model(name, log, found, heard, ("chi-square", "repeats"), own, told)
+
+
+def gates(log: Log, found: FollowerRoles, residual: Cubature) -> tuple[Monitor, Float[np.ndarray, " L"]]:
+    """The filter behind both tests, and the longest run of repeats that each leader of this healthy log is allowed."""
+    repeats = Repeats(len(log.channels))
     runs = score_tape(monitor(log, residual, Branch(repeats, on_ranges(log, found, np.inf))), log)[0]
     columns = [leader.range for leader in found.leaders]
     longest = np.maximum(repeat_limit(runs, log.period_s)[columns], LEAST_RUN)
@@ -39,8 +49,7 @@ def cooperative(name: str, log: Log, filter: Filter | None = None) -> Model:
         Branch(Normalised(), on_ranges(log, found, limit(FALSE_ALARMS))),
         Branch(repeats, on_ranges(log, found, longest), certain=True),
     )
-    told = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
-    return model(name, log, found, heard, ("chi-square", "repeats"), own, told)
+    return heard, longest
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:

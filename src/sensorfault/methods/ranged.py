@@ -90,7 +90,7 @@ def _cubature(
 
 def monitor(log: Log, residual: Cubature, *branches: Branch) -> Monitor:
     """What is over a limit has gain 0; without branches, with the limits off."""
-    silent = Branch(Normalised(), Fixed(jnp.full(len(log.channels), jnp.inf)))
+    silent = Branch(Normalised(), Fixed(jnp.inf * jnp.ones(len(log.channels))))  # not full: that is weakly typed
     return Monitor(
         residual=residual,
         branches=branches or (silent,),

@@ -65,6 +65,7 @@ from sensorfault.numerics.unit_range import UnitRange
 from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.height import Climb, StepNetwork
 from sensorfault.vehicles.inertial import Inertial, SideOn
+from sensorfault.vehicles.rover import Rover
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, Leader
 
 PARTS: dict[str, type[eqx.Module]] = {
@@ -83,7 +84,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
         *(TwoHeights, Agreement),
         *(Cubature, Stated, SageHusa, WindowedNoise, Normalised, DoubleThreshold),
-        *(Follower, FollowerRoles, Leader),
+        *(Follower, FollowerRoles, Leader, Rover),
         *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
         *(Fixed, ScaledMax, Sigma),

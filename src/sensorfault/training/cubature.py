@@ -16,6 +16,7 @@ HEAVY = 4.0  # degrees of freedom of the law that innovations are taken to follo
 NARROW = 0.8310  # its scale, fitted to Gaussian numbers, over theirs: E (ν + 1) z² / (ν + z²) = 1 for z = N(0, 1) / s
 UNTOLD = 100.0  # times its own variance: a noise that leaves a range out
 START = (0.1, 3.0)  # [m²/s], [m]
+ROUND = 256  # rows
 BOUNDS = ((1e-4, 10.0), (0.01, 50.0))
 
 
@@ -27,7 +28,7 @@ def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], lo
     """
     from scipy.optimize import minimize  # lazily: slow to import, and seldom needed
 
-    rows = samples(log.time, log.value, log.fresh)
+    rows = _filled(log)
 
     def at(x: Float[np.ndarray, "2"]) -> float:
         return float(_cost(build(*jnp.exp(jnp.asarray(x))), rows))
@@ -36,6 +37,13 @@ def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], lo
     found = minimize(at, np.log(START), method="Nelder-Mead", bounds=np.log(BOUNDS), options=options)
     q, sigma = np.exp(found.x) / np.array([NARROW**2, NARROW])
     return float(q), float(sigma)
+
+
+def _filled(log: Log) -> Sample:
+    """The log, and rows in which nothing comes up to a round number, so that one compilation serves many logs."""
+    after = (0, -len(log) % ROUND)
+    value = np.pad(log.value, (after, (0, 0)), constant_values=np.nan)
+    return samples(np.pad(log.time, after, "edge"), value, np.pad(log.fresh, (after, (0, 0))))
 
 
 @jax.jit

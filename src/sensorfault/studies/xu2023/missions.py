@@ -75,7 +75,7 @@ def judged(condition: Condition, effort: Effort) -> Told:
         tables = np.array([table(run.flagged, case) for run, case in zip(flown, cases, strict=True)])
         gated = one.name != "ungated-ackf"
         for run, case, four in zip(flown, cases, tables, strict=True):
-            told.add(f"{words} as-printed", one.name, scores(four, run, case, gated))
+            told.add(f"{words} as-printed", one.name, scores(four, run.off_m[case.judged], gated))
         shown[name] = flown[0]
         off_m[name] = np.concatenate([run.off_m[case.judged] for run, case in zip(flown, cases, strict=True)])
         accuracy[name] = tables[:, :2].sum(axis=1) / tables.sum(axis=1)
@@ -88,7 +88,7 @@ def judged(condition: Condition, effort: Effort) -> Told:
         if np.isfinite(times):
             for case in cases:
                 run = through(eased(one.make(case), times), case)
-                told.add(f"{words} fpr2e-2", one.name, scores(table(run.flagged, case), run, case, gated))
+                told.add(f"{words} fpr2e-2", one.name, scores(table(run.flagged, case), run.off_m[case.judged]))
     for name, values in accuracy.items():
         method, _, variant = name.partition(" ")
         for rival in (AGAINST, RIVAL):

@@ -12,6 +12,7 @@ from sensorfault.simulation.underwater import Path as Track
 from sensorfault.simulation.underwater import mission
 from sensorfault.studies.data import real
 from sensorfault.studies.xu2023.scenario import DURATION_S, RANGING, Scenario, struck
+from sensorfault.studies.xu2023.walks import robust_sd, walks
 
 RUNS, JOINED = 7, 5
 SIGMA_M = 3.0
@@ -59,16 +60,5 @@ def _run(folder: Path, k: int) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarr
 @cache
 def _spikes() -> Float[np.ndarray, " n"]:
     """Errors of real ranging among walkers, each anchor's over its robust standard deviation: spikes and all."""
-    errors = []
-    for case in sorted(real("ranging/uwb_outdoor").glob("LOS/*/*")):
-        track = pl.read_csv(case / "trajectory.csv").to_numpy()
-        for anchor in sorted(case.glob("A*.csv")):
-            told = pl.read_csv(anchor)
-            time = told["%time"].to_numpy().astype(float)
-            inside = (time >= track[0, 0]) & (time <= track[-1, 0])
-            at = np.column_stack([np.interp(time, track[:, 0], track[:, i]) for i in (1, 2, 3)])
-            away = np.linalg.norm(at - told.select("field.x", "field.y", "field.z").to_numpy(), axis=1)
-            off = (told["field.distanceFromTag"].to_numpy() - away)[inside]
-            off = off - np.median(off)
-            errors.append(off / (1.4826 * np.median(np.abs(off))))
-    return np.concatenate(errors)
+    off = [walk.error(anchor) for walk in walks() for anchor in walk.anchors.values()]
+    return np.concatenate([(e - np.median(e)) / robust_sd(e) for e in off])

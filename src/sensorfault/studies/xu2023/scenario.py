@@ -26,22 +26,28 @@ FAST = replace(RANGING, sigma_m=1.0, period_s=2.35)
 
 @dataclass(frozen=True)
 class Scenario:
-    """`error`: of each range, L leaders, as GPS would show it [m]; NaN where none arrived. `position`: true [rad]."""
+    """`error`: of each range, L leaders, as GPS would show it [m]; NaN where none arrived. `position`: true, latitude
+    and longitude [rad], or north and east [m] if not `geodetic`. `wrong_m`: beyond which a range is anomalous, one or
+    one a leader. What comes before `since_s` is learned from, the rest is judged.
+    """
 
     log: Log
     error: Float[np.ndarray, "T L"]
     position: Float[np.ndarray, "T 2"]
-    faults: tuple[Fault, ...]
+    faults: tuple[Fault, ...] = ()
+    wrong_m: float | Float[np.ndarray, " L"] = WRONG_M
+    since_s: float = TRAINED_S
+    geodetic: bool = True
 
     @property
     def wrong(self) -> Bool[np.ndarray, "T L"]:
         """The ranges that are anomalous."""
-        return np.asarray(np.abs(self.error) > WRONG_M)
+        return np.asarray(np.abs(self.error) > self.wrong_m)
 
     @property
     def judged(self) -> Bool[np.ndarray, " T"]:
         """The rows that are judged."""
-        return np.asarray(self.log.time >= TRAINED_S)
+        return np.asarray(self.log.time >= self.since_s)
 
 
 def scenario(seed: int, ranging: Ranging = RANGING) -> Scenario:
