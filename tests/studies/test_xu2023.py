@@ -50,7 +50,7 @@ def test_lockout_is_the_longest_wait(case) -> None:
 def test_scores_are_the_papers(case) -> None:
     """Table 2 and figure 16 of the paper: ANFIS."""
     run = through(chi_square("x", early(case).log, 0.01, Filter(0.2)).monitor, case)
-    told = scores(np.array([47.0, 401.0, 4.0, 10.0]), run, case)
+    told = scores(np.array([47.0, 401.0, 4.0, 10.0]), run.off_m)
     assert told["accuracy"] == pytest.approx(448 / 462)
     assert told["precision"] == pytest.approx(47 / 51)
     assert told["fpr"] == pytest.approx(4 / 405)

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.model import Model, hold_s, owners
+from sensorfault.model import MISSED, Model, hold_s, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
@@ -77,12 +77,14 @@ def cubature(log: Log, found: FollowerRoles, filter: Filter) -> Cubature:
 def _cubature(
     log: Log, found: FollowerRoles, filter: Filter, q: Float[Array, ""], sigma_m: Float[Array, ""]
 ) -> Cubature:
+    period = {sensor.name: sensor.period_s for sensor in log.sensors}
     return Cubature(
         vehicle=Follower(q, jnp.asarray(START_M), found),
         r=sigma_m**2 * jnp.ones(len(found.leaders)),
         noise=Stated(filter.adaptive),
         growth=jnp.asarray(filter.growth),
         repeated=jnp.asarray(filter.repeated),
+        stale_s=jnp.asarray(MISSED * max(period[log.channels[leader.range].sensor] for leader in found.leaders)),
         channels=len(log.channels),
         states=2,
     )

@@ -55,6 +55,7 @@ class _Belief(NamedTuple):
     time: Float[Array, ""]  # [s]
     rejected: Float[Array, ""]  # measurements refused since one was last taken in
     last: Float[Array, " M"]  # measurements as they were last taken in; NEVER where none was
+    heard: Float[Array, " M"]  # when that was [s]
     learned: Any  # of the measurements' noise
     alive: Bool[Array, ""]
 
@@ -77,7 +78,8 @@ class Cubature(eqx.Module):
     measurement refused in a row makes the variance of the process larger by this share (up to 20 of them), so that a
     filter that refuses all soon doubts itself instead of them. `repeated`: an exact repeat's R is so many times as
     large: a sensor that says the same to the last bit has likely not measured. The filter begins where the vehicle can
-    tell its state. What h bends within the filter's spread counts as noise.
+    tell its state. Of a measurement that was not taken in for `stale_s`, what h bends within the filter's spread counts
+    as noise: points that stand far apart would else make a vague belief a wrong one.
     Xu et al. 2023, (6)-(20), (30) and (31); what trust leaves out has gain 0, (33)-(35).
     """
 
@@ -86,6 +88,7 @@ class Cubature(eqx.Module):
     noise: Stated | SageHusa | WindowedNoise
     growth: Float[Array, ""]
     repeated: Float[Array, ""]
+    stale_s: Float[Array, ""]
     channels: int = eqx.field(static=True)
     states: int = eqx.field(static=True)
 
@@ -93,7 +96,7 @@ class Cubature(eqx.Module):
         nothing = jnp.zeros(())
         never, no = jnp.asarray(NEVER, float), jnp.zeros((), bool)
         last, learned = jnp.full(self.r.shape, NEVER, float), self.noise.init(self.r)
-        return _Belief(jnp.zeros(self.states), jnp.eye(self.states), never, nothing, last, learned, no)
+        return _Belief(jnp.zeros(self.states), jnp.eye(self.states), never, nothing, last, last, learned, no)
 
     def evaluate(self, belief: _Belief, sample: Sample) -> tuple[Residual, _Work]:
         motion: Motion = self.vehicle
@@ -102,7 +105,8 @@ class Cubature(eqx.Module):
         there = picked(sample.fresh, motion.observed) & motion.ready(sample) & prior.alive
         said = picked(sample.value, motion.observed)
         innovation = jnp.where(there, said - seen.expected, 0.0)
-        curved = bent(seen, motion.expected(prior.mean, sample))
+        stale = sample.time - prior.heard > self.stale_s
+        curved = jnp.where(stale, bent(seen, motion.expected(prior.mean, sample)), 0.0)
         predicted = (seen.dz**2).sum(axis=1) + curved
         used = self.noise.noise(prior.learned, self.r, innovation, predicted)
         again = there & (said == prior.last)
@@ -140,6 +144,7 @@ class Cubature(eqx.Module):
             time=sample.time,
             rejected=jnp.where(taken.any() | begins, 0.0, jnp.minimum(prior.rejected + refused, MANY)),
             last=jnp.where(taken, picked(sample.value, motion.observed), prior.last),
+            heard=jnp.where(taken, sample.time, prior.heard),
             learned=self.noise.learn(prior.learned, innovation, predicted, taken),
             alive=prior.alive | begins,
         )

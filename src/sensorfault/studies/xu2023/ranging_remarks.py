@@ -42,8 +42,8 @@ def of_dive(numbers: Numbers, groups: Mapping[str, Bool[np.ndarray, "T L"]]) -> 
         f"receivers are apart and cannot be right; cooperative refuses {refused('impossible'):.2f} of these and "
         f"{refused(''):.3f} of all, {refused('weak-third'):.3f} of the weakest third and {refused('strong-third'):.3f} "
         f"of the strongest. chi-square-ackf-01 refuses {refused('', RIVAL):.3f} of all: 54 s after the start the told "
-        "depth steps by 0.6 m, all four ranges are refused at once, and the robot swims away faster than the spread of "
-        "a random walk grows; cooperative, which doubts its own way the more the more it refuses, comes back."
+        "depth steps by 0.6 m and all four ranges are refused at once; cooperative, which doubts its own way the more "
+        "the more it refuses, is back sooner."
     )
 
 

@@ -20,6 +20,7 @@ from sensorfault.vehicles.underwater import FollowerRoles, Leader
 METHODS = ("ungated-ackf", "chi-square-ackf-01", "cooperative")
 FIRST = (0.05, 0.05, 0.05)  # standard deviations of the pose it begins at [m], [m], [rad]
 LASTS_S, APART_S = 60.0, 20.0  # a fault, and the time until the next
+STALE_S = 10.0  # out of sight for so long
 FEWEST = 10  # ranges of a landmark while it lies
 DRIFT = 0.05  # [m/s]
 
@@ -49,6 +50,7 @@ def _cubature(log: Log, filter: Filter) -> Cubature:
         noise=Stated(filter.adaptive),
         growth=jnp.asarray(filter.growth),
         repeated=jnp.asarray(filter.repeated),
+        stale_s=jnp.asarray(STALE_S),
         channels=len(log.channels),
         states=3,
     )
