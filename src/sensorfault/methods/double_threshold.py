@@ -8,18 +8,8 @@ import numpy as np
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.chi_square_cubature import limit
-from sensorfault.methods.ranged import (
-    GROWTH,
-    WRONG,
-    Filter,
-    cubature,
-    fitted,
-    followed,
-    lessons,
-    model,
-    monitor,
-    on_ranges,
-)
+from sensorfault.methods.ranged import GROWTH, WRONG, Filter, cubature, fitted, followed, model, monitor, on_ranges
+from sensorfault.methods.ranges_learned import lessons
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch

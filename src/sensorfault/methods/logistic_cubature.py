@@ -4,20 +4,8 @@ from collections.abc import Sequence
 from functools import partial
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.ranged import (
-    GROWTH,
-    WRONG,
-    Filter,
-    cubature,
-    fitted,
-    followed,
-    learned,
-    lessons,
-    model,
-    monitor,
-    on_ranges,
-    widest,
-)
+from sensorfault.methods.ranged import GROWTH, WRONG, Filter, cubature, fitted, followed, model, monitor, on_ranges
+from sensorfault.methods.ranges_learned import learned, lessons, widest
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch

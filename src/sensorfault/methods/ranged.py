@@ -1,6 +1,5 @@
-"""What the methods share that judge a follower's ranges: the filter, the monitor around it, and what is learned."""
+"""What the methods share that judge a follower's ranges: the filter and the monitor around it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,15 +18,12 @@ from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.replay import replay_log
 from sensorfault.training.cubature import likeliest
-from sensorfault.training.labelled import Labelled
-from sensorfault.training.ranges import Lesson, labelled, spoiled, submerged, surfaced
+from sensorfault.training.ranges import submerged
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, roles
 
 START_M = 2.0  # standard deviation of the first fix, north and east [m]
 LEAST = 40  # ranges of each leader
 GROWTH = 0.5  # of the recipes; none as printed
-WIDER = 5.0  # times the usual variance of an innovation: beyond it nothing was learned
-COPIES = 4  # of the log, each with other faults, to learn from
 WRONG = 3.0  # a range further off than so many of its standard deviations is anomalous: 9 m of 3 m
 
 
@@ -116,28 +112,6 @@ def fitted(log: Log, found: FollowerRoles, filter: Filter) -> Filter:
     under = submerged(log, found.position)
     q, sigma_m = likeliest(lambda q, sigma: monitor(log, _cubature(log, found, plain, q, sigma)), under)
     return replace(filter, q=q, sigma_m=sigma_m)
-
-
-def lessons(log: Log, found: FollowerRoles, filter: Filter, seed: int) -> list[Lesson]:
-    """The log as it is and copies of it with faults, and how far off each range is.
-
-    The errors are those that the log's fixes show; ranges without a fix are taken for right before faults come in.
-    """
-    vehicle: Follower = cubature(log, found, filter).vehicle
-    known = Lesson(submerged(log, found.position), np.nan_to_num(surfaced(log, vehicle)))
-    return [known, *(spoiled(known, vehicle, filter.sigma_m, seed + i) for i in range(COPIES))]
-
-
-def learned(log: Log, found: FollowerRoles, filter: Filter, of: Sequence[Lesson]) -> list[Labelled]:
-    """Features and errors of each leader's ranges."""
-    residual = cubature(log, found, filter)
-    return labelled(monitor(log, residual), of, residual.vehicle)
-
-
-def widest(of: Sequence[Labelled]) -> Float[Array, " L"]:
-    """Up to which variance of a leader's innovations something was learned of them, and a bit more [m²]."""
-    # S = r² / M²
-    return jnp.asarray([WIDER * float(np.median(one.features[:, 0] ** 2 / one.features[:, 1])) for one in of])
 
 
 def model(

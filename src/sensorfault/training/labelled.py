@@ -1,5 +1,6 @@
 """Features of measurements whose error is known, to learn from."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,11 @@ class Labelled(NamedTuple):
 
     features: Float[np.ndarray, "N F"]
     target: Float[np.ndarray, " N"]
+
+
+def joined(of: Iterable[Labelled]) -> Labelled:
+    """All rows together."""
+    return Labelled(*(np.concatenate(parts) for parts in zip(*of, strict=True)))
 
 
 def checked(features: Float[np.ndarray, "N F"], target: Float[np.ndarray, " N"]) -> None:

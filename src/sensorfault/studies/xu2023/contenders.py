@@ -5,19 +5,19 @@ from dataclasses import dataclass, replace
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 
 from sensorfault.methods.anfis_cubature import anfis
 from sensorfault.methods.chi_square_cubature import chi_square
 from sensorfault.methods.cooperative import REPEATED, cooperative
 from sensorfault.methods.double_threshold import double_threshold
 from sensorfault.methods.logistic_cubature import logistic
-from sensorfault.methods.ranged import GROWTH, Filter, cubature, followed, learned, monitor, on_ranges
+from sensorfault.methods.ranged import GROWTH, Filter, cubature, followed, monitor, on_ranges
+from sensorfault.methods.ranges_learned import learned
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.statistic.repeats import Repeats
 from sensorfault.studies.xu2023.scenario import TRAINED_S, Scenario
 from sensorfault.training.fuzzy import Setting
-from sensorfault.training.labelled import Labelled
+from sensorfault.training.labelled import joined
 from sensorfault.training.ranges import Lesson
 from sensorfault.vehicles.underwater import FollowerRoles
 
@@ -50,7 +50,7 @@ def contenders(q: float, sigma_m: float, pool: Sequence[Scenario]) -> tuple[Cont
     log = pool[0].log
     found = followed("xu2023", log)
     many = learned(log, found, adaptive, [early(case) for case in pool])
-    both = [_joined(many)] * len(many)
+    both = [joined(many)] * len(many)
     trained = double_threshold("double-threshold", log, found, plain, [early(case) for case in pool]).monitor
     rules = anfis("anfis-cubature-9m", log, found, adaptive, both, False, POOLED).monitor
     odds = logistic("logistic-cubature", log, found, adaptive, both).monitor
@@ -88,11 +88,6 @@ def _with_repeats(case: Scenario, found: FollowerRoles, filter: Filter) -> Monit
     gate = chi_square("chi-square", early(case).log, 0.01, filter).monitor
     repeats = Branch(Repeats(len(case.log.channels)), on_ranges(case.log, found, 0.5), certain=True)
     return replace(gate, branches=(*gate.branches, repeats))
-
-
-def _joined(many: Sequence[Labelled]) -> Labelled:
-    """All leaders' ranges together."""
-    return Labelled(*(np.concatenate(parts) for parts in zip(*many, strict=True)))
 
 
 def eased(of: Monitor, times: float) -> Monitor:

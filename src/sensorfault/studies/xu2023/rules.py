@@ -3,7 +3,8 @@
 import numpy as np
 
 from sensorfault.methods.anfis_cubature import RULES
-from sensorfault.methods.ranged import Filter, followed, learned
+from sensorfault.methods.ranged import Filter, followed
+from sensorfault.methods.ranges_learned import learned
 from sensorfault.numerics.innovation import FEATURES
 from sensorfault.studies.findings import Effort, Figure, Findings
 from sensorfault.studies.numbers import Numbers
@@ -12,7 +13,7 @@ from sensorfault.studies.xu2023.learners import compared, curves
 from sensorfault.studies.xu2023.learning_figures import features, learning, memberships, surface
 from sensorfault.studies.xu2023.scenario import WRONG_M, Scenario, scenario
 from sensorfault.training.fuzzy import fit_anfis
-from sensorfault.training.labelled import Labelled
+from sensorfault.training.labelled import Labelled, joined
 from sensorfault.training.ranges import Lesson
 from sensorfault.training.rules import sentences
 
@@ -27,10 +28,10 @@ def findings(effort: Effort) -> Findings:
     pool, seen = ([scenario(first + k) for k in range(many)] for first in (POOL, SEEN))
     numbers = Numbers("E", "simulated", "simulated")
     learn, test = (_labelled([early(case) for case in pool], True), _labelled([_late(case) for case in seen], True))
-    compared(numbers, "Q0.2 open-loop pooled", _both(learn), _both(test), WRONG_M)
+    compared(numbers, "Q0.2 open-loop pooled", joined(learn), joined(test), WRONG_M)
     for one, own in zip(seen, [_labelled([early(case)], True) for case in seen], strict=True):
-        compared(numbers, "Q0.2 open-loop one-mission", _both(own), _both(_labelled([_late(one)], True)), WRONG_M)
-    curves(numbers, "Q0.2 open-loop", _both(learn), _both(test), WRONG_M, draws=2 if effort.quick else 5)
+        compared(numbers, "Q0.2 open-loop one-mission", joined(own), joined(_labelled([_late(one)], True)), WRONG_M)
+    curves(numbers, "Q0.2 open-loop", joined(learn), joined(test), WRONG_M, draws=2 if effort.quick else 5)
     rows = tuple(numbers.rows())
     figures = []
     for j in range(2):
@@ -41,7 +42,7 @@ def findings(effort: Effort) -> Findings:
         ]
     figures.append(_features(pool[0]))
     figures.append(learning("e_learning", "How much there must be to learn from", rows))
-    said = sentences(fit_anfis(*_both(learn), POOLED).model, FEATURES)
+    said = sentences(fit_anfis(*joined(learn), POOLED).model, FEATURES)
     remark = "Rules learned from eight missions, both leaders, of the logarithms: " + " ".join(said)
     return Findings(rows, tuple(figures), (remark,))
 
@@ -63,7 +64,3 @@ def _features(case: Scenario) -> Figure:
     at = lesson.log.time[~np.isnan(lesson.error[:, 0])][-len(plain.target) :]
     title = "Features of the ranges to leader 1, by both filters"
     return features("e_features", title, at, plain.target, plain.features, adaptive.features)
-
-
-def _both(leaders: list[Labelled]) -> Labelled:
-    return Labelled(*(np.concatenate(parts) for parts in zip(*leaders, strict=True)))
