@@ -59,7 +59,11 @@ STUDIES: dict[str, Study] = {
             "Ranges under water that lie, and fuzzy rules that foretell by how much",
             "Xu et al. 2023",
             xu2023,
-            {"E": "Two leaders, one follower"},
+            {
+                "E": "Two leaders, one follower",
+                "E-rules": "What can be learned of a range's error, every range taken in",
+                "E-ranging": "Real ranges: walkers by radio, robots to landmarks, a dive by sound",
+            },
         ),
     )
 }

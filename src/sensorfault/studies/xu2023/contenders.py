@@ -66,7 +66,6 @@ def contenders(q: float, sigma_m: float, pool: Sequence[Scenario]) -> tuple[Cont
         for far in (0.05, 0.01)
     ]
     return (
-        Contender("ungated-ackf", "", lambda case: monitor(case.log, cubature(case.log, found, adaptive))),
         *gates,
         Contender("repeats-or-chi-square", "", lambda case: _with_repeats(case, found, adaptive)),
         Contender("double-threshold", TOGETHER, lambda case: trained),
@@ -76,6 +75,7 @@ def contenders(q: float, sigma_m: float, pool: Sequence[Scenario]) -> tuple[Cont
         Contender("logistic-cubature", TOGETHER, lambda case: odds),
         Contender("cooperative", TOLD, lambda case: cooperative("cooperative", early(case).log, whole).monitor),
         Contender("cooperative", "", lambda case: cooperative("cooperative", early(case).log).monitor),
+        Contender("ungated-ackf", "", lambda case: monitor(case.log, cubature(case.log, found, adaptive))),
     )
 
 

@@ -29,7 +29,7 @@ def findings(effort: Effort) -> Findings:
 
 def _walks(effort: Effort) -> Findings:
     """The first walk of each trajectory with `quick`."""
-    numbers = Numbers("E", "uwb_outdoor", "real")
+    numbers = Numbers("E-ranging", "uwb_outdoor", "real")
     every = [
         following(f"walk-{walk.name}", walks.scenario(walk)) for walk in walks.walks()[:: 2 if effort.quick else 1]
     ]
@@ -42,7 +42,7 @@ def _robots(effort: Effort) -> Findings:
     every = [watched(robot) for robot in robots.ROBOTS[: 2 if effort.quick else None]]
     gated = [method for method in METHODS if not method.startswith("ungated")]
     factors = {method: matching(method, every, _rows(every)) for method in gated}
-    real, injected = Numbers("E", "mrclam", "real"), Numbers("E", "mrclam", "injected")
+    real, injected = Numbers("E-ranging", "mrclam", "real"), Numbers("E-ranging", "mrclam", "injected")
     compared(real, FITTED, every, dict.fromkeys(METHODS, 1.0), _rows(every))
     compared(real, MATCHED, every, factors, _rows(every))
     lying = [struck(one, seed=1) for one in every]
@@ -65,7 +65,7 @@ def _dive(effort: Effort) -> Findings:
         "strong-third": later & (of.signal >= strong),
         "unsolved": later & ~of.solved[:, None],
     }
-    numbers = Numbers("E", "ugps_g2", "real")
+    numbers = Numbers("E-ranging", "ugps_g2", "real")
     for method, monitor in one.monitors.items():
         run = through(monitor, one.case)
         numbers.add(FITTED, method, {"innovation_sd": innovation_sd(run, one.case)})

@@ -26,7 +26,7 @@ def findings(effort: Effort) -> Findings:
     effort.tell("rules from much and from little", 0.0)
     many = 3 if effort.quick else 8
     pool, seen = ([scenario(first + k) for k in range(many)] for first in (POOL, SEEN))
-    numbers = Numbers("E", "simulated", "simulated")
+    numbers = Numbers("E-rules", "simulated", "simulated")
     learn, test = (_labelled([early(case) for case in pool], True), _labelled([_late(case) for case in seen], True))
     compared(numbers, "Q0.2 open-loop pooled", joined(learn), joined(test), WRONG_M)
     for one, own in zip(seen, [_labelled([early(case)], True) for case in seen], strict=True):
@@ -37,11 +37,13 @@ def findings(effort: Effort) -> Findings:
     for j in range(2):
         fit = fit_anfis(*learn[j], RULES)
         figures += [
-            memberships(f"e_memberships{j + 1}", f"Membership functions of ANFIS-{j + 1}", fit.start, fit.model),
-            surface(f"e_surface{j + 1}", f"Error of a range to leader {j + 1} over its features", fit.model, learn[j]),
+            memberships(f"e-rules_memberships{j + 1}", f"Membership functions of ANFIS-{j + 1}", fit.start, fit.model),
+            surface(
+                f"e-rules_surface{j + 1}", f"Error of a range to leader {j + 1} over its features", fit.model, learn[j]
+            ),
         ]
     figures.append(_features(pool[0]))
-    figures.append(learning("e_learning", "How much there must be to learn from", rows))
+    figures.append(learning("e-rules_learning", "How much there must be to learn from", rows))
     said = sentences(fit_anfis(*joined(learn), POOLED).model, FEATURES)
     remark = "Rules learned from eight missions, both leaders, of the logarithms: " + " ".join(said)
     return Findings(rows, tuple(figures), (remark,))
@@ -63,4 +65,4 @@ def _features(case: Scenario) -> Figure:
     plain, adaptive = (_labelled([lesson], kind)[0] for kind in (False, True))
     at = lesson.log.time[~np.isnan(lesson.error[:, 0])][-len(plain.target) :]
     title = "Features of the ranges to leader 1, by both filters"
-    return features("e_features", title, at, plain.target, plain.features, adaptive.features)
+    return features("e-rules_features", title, at, plain.target, plain.features, adaptive.features)
