@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.numerics.cubature import correct, observe, predict, triangular
+from sensorfault.numerics.cubature import bent, correct, observe, predict, triangular
 from sensorfault.numerics.geodesy import meridian_radius, transverse_radius
 
 
@@ -113,3 +113,18 @@ def test_a_spread_of_nothing_is_a_root_of_nothing() -> None:
     wide = np.array([[1.0, 2.0], [0.0, 0.0], [2.0, 4.0]])
     root = triangular(jnp.asarray(wide))
     np.testing.assert_allclose(root @ root.T, wide @ wide.T, atol=1e-12)
+
+
+def test_what_bends_is_as_large_as_chance_makes_it() -> None:
+    """h = x² / 2ρ + y has a curvature of 1 / ρ: of x = N(0, σ²) it makes a variance of (σ² / ρ)² / 2."""
+    rho, sigma = 300.0, np.array([40.0, 3.0])
+
+    def h(x):
+        return jnp.stack([x[0] ** 2 / (2 * rho) + x[1]])
+
+    mean = jnp.zeros(2)
+    seen = observe(h, mean, jnp.diag(jnp.asarray(sigma)))
+    drawn = np.random.default_rng(0).normal(0, sigma[0], 200_000) ** 2 / (2 * rho)
+    np.testing.assert_allclose(bent(seen, h(mean)), [drawn.var()], rtol=0.02)
+    straight = observe(lambda x: x[:1], mean, jnp.eye(2))
+    np.testing.assert_allclose(bent(straight, jnp.zeros(1)), [0.0], atol=1e-20)

@@ -51,3 +51,11 @@ def test_gps_is_there_on_the_surface_only() -> None:
 def test_too_short() -> None:
     with pytest.raises(ValueError, match="make it longer"):
         sail(1.0)
+
+
+def test_sound_faster_than_assumed_makes_ranges_short() -> None:
+    mission = sail(2000.0, 6, Ranging(sigma_m=0.5, sound=1.05))
+    column = mission.log.index("leader2.range")
+    heard = mission.log.fresh[:, column]
+    told = mission.log.value[heard, column] / mission.truth.value[heard, column]
+    assert told.mean() == pytest.approx(1 / 1.05, rel=1e-3)
