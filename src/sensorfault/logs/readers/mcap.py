@@ -101,7 +101,7 @@ def _cut_chunk(file: TellingFile, start: int) -> list[Any]:
             for record in StreamReader(BytesIO(inside), skip_magic=True, record_size_limit=len(inside)).records:
                 found.append(record)  # noqa: PERF402  # what came before an error counts
     except (McapError, *_BROKEN):
-        pass
+        pass  # that and where the file is cut, its reader says
     return found[:-1]  # the last may be half of one
 
 
