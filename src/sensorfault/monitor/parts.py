@@ -28,6 +28,7 @@ from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
 from sensorfault.monitor.statistic.absolute import Absolute
 from sensorfault.monitor.statistic.agreement import Agreement
 from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
+from sensorfault.monitor.statistic.cumulative_bank import CumulativeBank
 from sensorfault.monitor.statistic.cusum import Cusum
 from sensorfault.monitor.statistic.deficit import Deficit
 from sensorfault.monitor.statistic.double_threshold import DoubleThreshold
@@ -39,10 +40,12 @@ from sensorfault.monitor.statistic.lasting import Lasting
 from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.mean_pair import MeanPair
+from sensorfault.monitor.statistic.means import Means
 from sensorfault.monitor.statistic.norm import Norm
 from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.monitor.statistic.normality import Normality
 from sensorfault.monitor.statistic.of import Of
+from sensorfault.monitor.statistic.outlier_factor import OutlierFactor
 from sensorfault.monitor.statistic.ramp_glr import RampGlr
 from sensorfault.monitor.statistic.relative import Relative
 from sensorfault.monitor.statistic.repeats import Repeats
@@ -53,6 +56,7 @@ from sensorfault.monitor.statistic.standing import Standing
 from sensorfault.monitor.statistic.whitened import Whitened
 from sensorfault.monitor.statistic.windowed import Windowed
 from sensorfault.monitor.statistic.windowed_chi_square import WindowedChiSquare
+from sensorfault.monitor.statistic.windowed_outlier_factor import WindowedOutlierFactor
 from sensorfault.monitor.threshold.adaptive import Adaptive
 from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.monitor.threshold.scaled_max import ScaledMax
@@ -61,6 +65,7 @@ from sensorfault.numerics.fuzzy import Anfis, Premises
 from sensorfault.numerics.logistic import Logistic
 from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm, LstmLayer
+from sensorfault.numerics.outlier_factor import LocalDensity
 from sensorfault.numerics.unit_range import UnitRange
 from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.height import Climb, StepNetwork
@@ -87,6 +92,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(Follower, FollowerRoles, Leader, Rover),
         *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, WindowedChiSquare, Cusum, Ewma),
+        *(OutlierFactor, WindowedOutlierFactor, LocalDensity, CumulativeBank, Means),
         *(Fixed, ScaledMax, Sigma),
         *(Exceed, Persist),
         *(Drop, Rebuild),

@@ -2,6 +2,7 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
+from math import ceil
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -90,3 +91,8 @@ def window(blocks: Blocks, length: Float[Array, ""]) -> Window:
         square=jnp.where(there, blocks.square, 0.0).sum(axis=0),
         length=length,
     )
+
+
+def enough(length_s: float, spacing_s: float) -> int:
+    """Slots for a window of this length, one for each value that comes after a spacing or a little earlier."""
+    return ceil((length_s / spacing_s + 2) / (1 - EARLY))
