@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from sensorfault.monitor.statistic.each import each
 from sensorfault.monitor.statistic.past import Past
-from sensorfault.numerics.blocks import EARLY, Window, window
+from sensorfault.numerics.blocks import Window, spacing, window
 from sensorfault.types import Residual, Score, Trust
 
 
@@ -40,10 +40,10 @@ class Windowed(eqx.Module):
         return Past.empty(self.slots, self.channels)
 
     def evaluate(self, state: Past, residual: Residual) -> tuple[Score, Past]:
-        spacing = self.window_s / ((1 - EARLY) * self.slots - 2)
+        apart = spacing(self.window_s, self.slots)
         variance = (jnp.eye(self.channels) * residual.cov).sum(axis=1)
-        after = state.taken(residual, residual.value, 1 / variance, spacing, self.gap_s)
-        full = self.early | (residual.time - after.since >= self.window_s - 1.5 * spacing)
+        after = state.taken(residual, residual.value, 1 / variance, apart, self.gap_s)
+        full = self.early | (residual.time - after.since >= self.window_s - 1.5 * apart)
         return each(self.measure(window(after.blocks, self.window_s)), residual.valid & full), after
 
     def update(self, pending: Past, trust: Trust) -> Past:
