@@ -35,6 +35,7 @@ class _Belief(NamedTuple):
     time: Float[Array, ""]  # [s]
     phase: Float[Array, ""]
     refused: Bool[Array, ""]  # most of the last epoch was
+    out: Bool[Array, " B"]  # of the bank, whose satellite the last epoch left out
 
 
 class _Lines(NamedTuple):
@@ -50,6 +51,7 @@ class _Work(NamedTuple):
     lines: _Lines
     innovation: Float[Array, " C"]
     blind: Bool[Array, ""]
+    size: Float[Array, " C"]  # of the residuals, in their standard deviations
 
 
 class InsGnss(eqx.Module):
@@ -91,6 +93,7 @@ class InsGnss(eqx.Module):
             jnp.asarray(NEVER, float),
             jnp.asarray(UNSEEN, float),
             jnp.zeros((), bool),
+            jnp.zeros(members, bool),
         )
 
     def evaluate(self, belief: _Belief, sample: Sample) -> tuple[Residual, _Work]:
@@ -120,23 +123,22 @@ class InsGnss(eqx.Module):
             valid=there & (prior.phase >= MOVING),
             born=sample.born,
         )
-        return residual, _Work(prior, sample, lines, innovation, blind)
+        size = jnp.abs(value) / jnp.sqrt((jnp.eye(len(there)) * cov).sum(axis=1))
+        return residual, _Work(prior, sample, lines, innovation, blind, jnp.where(there, size, 0.0))
 
     def update(self, pending: _Work, trust: Trust) -> _Belief:
-        prior, sample, lines, innovation, blind = pending
+        prior, sample, lines, innovation, blind, size = pending
         nowhere = prior.phase < MOVING
         there = lines.there
         ranges = there[: len(self.system)]
         # beginning, it takes what there is: nobody can be accused yet
         taken = there & (trust.measured | nowhere)
+        start, start_cov, apart, covs, out = self._without(prior, there & ~taken, size)
         aid, speeds, spread, ready = self._wheels(prior, sample.block)
         rows = jnp.concatenate([lines.rows, aid])
         z = jnp.concatenate([innovation, speeds])
         variance = jnp.concatenate([lines.variance, spread])
-        error, cov = correct(
-            jnp.zeros(self.states), prior.cov, rows, z, variance, jnp.concatenate([taken, ready & ~nowhere])
-        )
-        apart, covs = prior.apart, prior.covs
+        error, cov = correct(start, start_cov, rows, z, variance, jnp.concatenate([taken, ready & ~nowhere]))
         if self.bank:
             own = jnp.arange(len(there)) % len(self.system) == jnp.arange(len(self.system))[:, None]
             each = jnp.concatenate([taken[None] & ~own, jnp.broadcast_to(ready, (len(own), 3))], axis=1)
@@ -151,6 +153,7 @@ class InsGnss(eqx.Module):
             apart=apart,
             covs=covs,
             time=sample.time,
+            out=out,
             refused=(2 * few.sum() < there.sum()) & (prior.phase >= MOVING),
         )
         found = (
@@ -269,6 +272,29 @@ class InsGnss(eqx.Module):
         )
         moved = jnp.concatenate([by * there, jnp.zeros(len(z) - satellites)])
         return prior, z - moved
+
+    def _without(
+        self, prior: _Belief, refused: Bool[Array, " C"], size: Float[Array, " C"]
+    ) -> tuple[Float[Array, " n"], Float[Array, "n n"], Float[Array, "B n"], Float[Array, "B n n"], Bool[Array, " B"]]:
+        """A satellite that is newly left out has spoilt every filter but that without it: all go on from that one."""
+        nothing = jnp.zeros(self.states)
+        if not self.bank:
+            return nothing, prior.cov, prior.apart, prior.covs, prior.out
+        satellites = len(self.system)
+        out = refused.reshape(-1, satellites).any(axis=0)
+        worst = jnp.where(out & ~prior.out, size.reshape(-1, satellites).max(axis=0), 0.0)
+        mine = (worst == worst.max()) & (worst > 0)
+        found = mine.any()
+        mine = (jnp.arange(satellites) == jnp.argmax(mine)).astype(float)
+        mean = (mine[:, None] * prior.apart).sum(axis=0)
+        cov = (mine[:, None, None] * prior.covs).sum(axis=0)
+        return (
+            jnp.where(found, mean, nothing),
+            jnp.where(found, cov, prior.cov),
+            jnp.where(found, mean[None], prior.apart),
+            jnp.where(found, cov[None], prior.covs),
+            out,
+        )
 
     def _wheels(
         self, prior: _Belief, epoch: Epoch
