@@ -41,6 +41,7 @@ from sensorfault.monitor.statistic.freed import Freed
 from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
 from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.lasting import Lasting
+from sensorfault.monitor.statistic.late import Late
 from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.mean_pair import MeanPair
@@ -94,7 +95,7 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
         *(TwoHeights, Agreement),
-        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised, DoubleThreshold),
+        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised, Late, DoubleThreshold),
         *(Follower, FollowerRoles, Leader, Rover),
         *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, AveragedTogether, AveragedFreed, WindowedChiSquare, Cusum, Ewma),
