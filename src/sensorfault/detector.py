@@ -7,10 +7,11 @@ from jaxtyping import Bool, Float
 
 from sensorfault.detection import Detection, Trace
 from sensorfault.events import Event
+from sensorfault.logs.epochs import Gather
 from sensorfault.logs.table import Log
 from sensorfault.model import MOTION, TOGETHER, Model
 from sensorfault.replay import Progress, Replayed, replay_log
-from sensorfault.run import Now, Stepper
+from sensorfault.run import Now, Stepper, nothing_yet
 from sensorfault.tracker import QUIET_S, Tracker, Watch
 from sensorfault.types import FAULT
 
@@ -52,21 +53,26 @@ class Live:
 
     def __init__(self, model: Model) -> None:
         self.events: list[Event] = []
-        self._step = Stepper(model.monitor)
+        framing = model.framing
+        self._gather = Gather(framing) if framing else None
+        self._step = Stepper(model.monitor, framing.nothing if framing else ())
         self._watch = _watch(model)
         self._tracker = Tracker(self._watch)
         held = {sensor.name: sensor.held for sensor in model.sensors}
         names = [channel.sensor for channel in model.channels]
         self._held = [np.flatnonzero([n == name for n in names]) for name in held if held[name]]
-        self._fresh: Bool[np.ndarray, " C"] = np.ones(len(names), bool)
-        self._last: Float[np.ndarray, " C"] = np.full(len(names), np.nan)
+        self._fresh: Bool[np.ndarray, " C"] = np.ones(len(model.inputs), bool)
+        self._last: Float[np.ndarray, " C"] = np.full(len(model.inputs), np.nan)
+        self._now = nothing_yet(model.monitor)
         self._begun = False
         self._time: float | None = None
+        self._epoch: float | None = None  # when the last one ended
 
     def push(self, time: float, value: Any, fresh: Any = None) -> Now:
-        """Judge one sample: `time` [s], rising; `value` (C,) in SI and in the model's order, NaN for what is absent.
+        """Judge one sample: `time` [s], rising; `value` in SI in the order of `model.inputs`, NaN if absent.
 
-        `fresh` (C,) marks new measurements; left out, a held sensor is new when one of its channels has changed.
+        `fresh` marks new measurements; left out, a held sensor is new when one of its channels has changed. Where the
+        model judges epochs, a sample that ends none is answered with what was said of the last.
 
         Raises:
             ValueError: time did not rise, or the number of values is not that of the model's channels.
@@ -78,13 +84,25 @@ class Live:
             raise ValueError(f"live: time went from {self._time} to {time} s; push samples in order, each once.")
         if fresh is None:
             fresh = self._fresh if not self._held else self._changed(np.asarray(value, float))
-        now = self._step.push(time, value, fresh)
-        gap_s, self._time = (0.0 if self._time is None else float(time - self._time)), float(time)
+        before, self._time = self._time, float(time)
+        gap_s = 0.0 if before is None else self._time - before
+        if self._gather is None:
+            return self._judge(self._time, gap_s, np.asarray(value, float), fresh)
+        cut = self._gather.push(self._time, np.asarray(value, float), np.broadcast_to(fresh, len(value)))
+        if cut is None:
+            return self._now
+        gap_s, self._epoch = (0.0 if self._epoch is None else self._time - self._epoch), self._time
+        block = type(cut.epoch)(*(array[0] for array in cut.epoch))
+        self._now = self._judge(self._time, gap_s, cut.value[0], cut.fresh[0], block)
+        return self._now
+
+    def _judge(self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()) -> Now:
+        now = self._step.push(time, value, fresh, block)
         # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
         silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()
         if FAULT in (now.sample, now.motion) or silent or not self._begun or self._tracker.busy():
             self._begun = True
-            self.events += self._tracker.push(self._time, gap_s, np.asarray(value, float), now)
+            self.events += self._tracker.push(time, gap_s, value, now)
         return now
 
     def open(self) -> list[Event]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
+from sensorfault.logs.epochs import Epoch, Framing
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.monitor.monitor import Monitor
 
@@ -33,6 +34,7 @@ class Model:
     tick_s: float
     sigma: tuple[float, ...]
     summary: dict[str, Any] = field(default_factory=dict)
+    framing: Framing | None = None
 
     @property
     def period_s(self) -> Float[np.ndarray, " C"]:
@@ -42,15 +44,28 @@ class Model:
 
     @property
     def silent_after_s(self) -> Float[np.ndarray, " C"]:
-        """A channel without a value for longer than this is silent [s]; half a tick allows for jitter."""
+        """A channel without a value for longer than this is silent [s]; half a tick allows for jitter.
+
+        Satellites set: their silence is no fault.
+        """
+        if self.framing:
+            return np.full(len(self.channels), np.inf)
         return MISSED * self.period_s + self.tick_s / 2
 
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Paths of the channels that are read, in the order in which a live sample gives them."""
+        return self.framing.inputs if self.framing else tuple(channel.path for channel in self.channels)
+
     def take(self, log: Log) -> Log:
-        """The channels of this model out of a log, in the model's order.
+        """The channels of this model out of a log, in the model's order; epochs, if it judges those.
 
         Raises:
             LogError: a channel is missing, or the clock is not the one the model was fitted on.
         """
+        if self.framing:
+            framed = isinstance(log.block, Epoch) and log.channels == self.channels
+            return log if framed else self.framing.frame(log)
         have = {channel.path for channel in log.channels}
         missing = [channel.path for channel in self.channels if channel.path not in have]
         if missing:

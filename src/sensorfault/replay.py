@@ -94,7 +94,8 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
     for start in range(0, total, CHUNK):
         rows = np.minimum(np.arange(start, start + CHUNK), total - 1)
         real = np.arange(start, start + CHUNK) < total
-        chunk = samples(log.time[rows], log.value[rows], log.fresh[rows])
+        block = jax.tree.map(lambda array, rows=rows: array[rows], log.block)
+        chunk = samples(log.time[rows], log.value[rows], log.fresh[rows], block)
         state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
         told.append([np.asarray(part) for part in kept])
         if progress:

@@ -13,7 +13,7 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Bool, Float, Int8
 
 from sensorfault.monitor.monitor import Monitor, MonitorState
-from sensorfault.types import Report, Sample
+from sensorfault.types import UNKNOWN, Report, Sample
 
 Kept = TypeVar("Kept")
 
@@ -76,6 +76,14 @@ class Now(NamedTuple):
     residual: Float[np.ndarray, " C"]  # [SI]
     valid: Bool[np.ndarray, " C"]  # whether the residual was tested
     silence: Float[np.ndarray, " C"]  # [s]
+
+
+def nothing_yet(monitor: Monitor) -> Now:
+    """What is known before the first sample."""
+    channels, sensors = len(monitor.owner), max(monitor.owner) + 1
+    unknown = np.full(channels, UNKNOWN, np.int8), np.full(sensors, UNKNOWN, np.int8)
+    nan, none = np.full(channels, np.nan), np.full(0, np.nan)
+    return Now(*unknown, UNKNOWN, UNKNOWN, none, none, nan, nan, np.zeros(channels, bool), np.zeros(channels))
 
 
 def _tell(report: Report) -> tuple[Array, ...]:

@@ -17,6 +17,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save_file
 
 from sensorfault.files import appearing
+from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.model import Model, owners
 from sensorfault.monitor.monitor import Monitor
@@ -49,6 +50,7 @@ def save(model: Model, path: Path | str) -> None:
         "tick_s": model.tick_s,
         "sigma": model.sigma,
         "summary": model.summary,
+        "framing": vars(model.framing) if model.framing else None,
         "monitor": _encode(model.monitor, "monitor", tensors),
     }
     text = json.dumps(header, sort_keys=True)
@@ -94,6 +96,7 @@ def load(path: Path | str) -> Model:
             header["tick_s"],
             tuple(header["sigma"]),
             header["summary"],
+            _framing(header.get("framing")),
         )
         _try(model)
         return model
@@ -111,13 +114,21 @@ def _try(model: Model) -> None:
     if not channels == len(model.watched) == len(model.sigma):
         raise ValueError("its channels are not as many as its marks for them")
     none = jnp.zeros(channels, bool)
-    sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none)
+    block = jax.tree.map(jnp.asarray, model.framing.nothing) if model.framing else ()
+    sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none, block)
     after, told = jax.eval_shape(lambda: model.monitor.step(model.monitor.init(), sample))
     before = jax.eval_shape(model.monitor.init)
     if jax.tree.map(jnp.shape, after) != jax.tree.map(jnp.shape, before):
         raise ValueError("a step changes the shape of its state")
     if sum(score.value.shape[0] for score in told.scores) != len(model.tests):
         raise ValueError("its tests are not as many as their names")
+
+
+def _framing(told: dict[str, Any] | None) -> Framing | None:
+    if told is None:
+        return None
+    fields: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in told.items()}
+    return Framing(**fields)
 
 
 def _versions() -> dict[str, str]:

@@ -55,6 +55,7 @@ class Log:
     `value` is SI, NaN where nothing arrived. `fresh` marks new measurements, not held ones: fresh implies a value.
     `wheelbase_m` and `steering_ratio` are the vehicle's, if its file says them.
     `notes`: what reading found that a person should know (clock faults, held rows, guesses), one sentence each.
+    `block`: what a residual generator takes besides, arrays with an entry for each tick (see `epochs`).
     `damage`: those of them that say where a file could not be read, and what was read all the same.
     """
 
@@ -69,6 +70,7 @@ class Log:
     epoch_s: float | None = None
     wheelbase_m: float | None = None
     steering_ratio: float | None = None
+    block: Any = ()
 
     def __post_init__(self) -> None:
         rows, width = self.value.shape
@@ -123,12 +125,15 @@ class Log:
     def between(self, start_s: float = -np.inf, end_s: float = np.inf) -> "Log":
         """The rows with start_s <= time < end_s; times stay as they are."""
         rows = slice(*np.searchsorted(self.time, (start_s, end_s)))
-        return replace(self, time=self.time[rows], value=self.value[rows], fresh=self.fresh[rows])
+        return self._rows(rows)
 
     def without(self, rows: Int[np.ndarray, " n"]) -> "Log":
         """The log with these rows cut out; times stay as they are."""
-        time, value, fresh = (np.delete(array, rows, axis=0) for array in (self.time, self.value, self.fresh))
-        return replace(self, time=time, value=value, fresh=fresh)
+        return self._rows(np.delete(np.arange(len(self)), rows))
+
+    def _rows(self, rows: Any) -> "Log":
+        block = type(self.block)(*(array[rows] for array in self.block))
+        return replace(self, time=self.time[rows], value=self.value[rows], fresh=self.fresh[rows], block=block)
 
     def select(self, paths: Iterable[str]) -> "Log":
         """The same log with only these channels, in this order."""

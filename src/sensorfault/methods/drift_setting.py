@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from sensorfault.monitor.statistic.windowed import Measure, Windowed
-from sensorfault.numerics.blocks import EARLY
+from sensorfault.numerics.blocks import enough
 from sensorfault.stage import Stage
 
 GAP_BEATS = 10.0  # without the receiver or the barometer for so long, a window begins anew
@@ -39,7 +39,7 @@ class Setting:
 
     def windowed(self, measure: Measure, channels: int) -> Windowed:
         """This measure of a window with a block for each beat."""
-        slots = self.slots or int(np.ceil((self.window_s / self.beat_s + 2) / (1 - EARLY)))
+        slots = self.slots or enough(self.window_s, self.beat_s)
         return Windowed(measure, jnp.asarray(self.window_s), self.gap_s, channels, slots)
 
 

@@ -2,6 +2,7 @@
 
 import sensorfault._jax  # isort: skip  # noqa: F401
 
+from math import ceil
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -90,3 +91,13 @@ def window(blocks: Blocks, length: Float[Array, ""]) -> Window:
         square=jnp.where(there, blocks.square, 0.0).sum(axis=0),
         length=length,
     )
+
+
+def enough(length_s: float, spacing_s: float) -> int:
+    """Slots for a window of this length, one for each value that comes after a spacing or a little earlier."""
+    return ceil((length_s / spacing_s + 2) / (1 - EARLY))
+
+
+def spacing(length: Float[Array, ""], slots: int) -> Float[Array, ""]:
+    """How far apart slots begin [s] of which so many hold a window of this length."""
+    return length / ((1 - EARLY) * slots - 2)

@@ -1,20 +1,57 @@
 """Arithmetic of Gaussian vectors inside a compiled step, for a handful of channels: no LAPACK call, no scatter."""
 
+from functools import partial
+from typing import NamedTuple
+
+import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+from jax import lax
+from jaxtyping import Array, Bool, Float, Int
 
 
+@partial(jax.jit, inline=True)  # a loop called by itself is compiled anew each time
 def precision(cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> Float[Array, "C C"]:
     """Inverse of the covariance of the `known` components; zero for the others, which are marginalised out.
 
-    By sweeping each known component in turn (Goodnight 1979): a dozen components cost less than one call of LAPACK.
+    By sweeping each known component in turn (Goodnight 1979): a dozen components cost less than one call of LAPACK. In
+    a loop, for unrolled XLA computes the earlier sweeps again and again: milliseconds for 32 components instead of ten
+    microseconds.
     """
-    swept = cov
-    for k, own in enumerate(jnp.eye(len(cov))):
-        row, pivot = swept[k], swept[k, k]
-        off = row * (1 - own)
+
+    def sweep(k: Int[Array, ""], swept: Float[Array, "C C"]) -> Float[Array, "C C"]:
+        own = jnp.arange(len(cov), dtype=k.dtype) == k
         # a_ij - a_ik a_kj / a_kk,  a_ik / a_kk,  -1 / a_kk
-        apart = swept * ((1 - own)[:, None] * (1 - own)[None]) - off[:, None] * off[None] / pivot
-        border = (own[:, None] * off[None] + off[:, None] * own[None] - own[:, None] * own[None]) / pivot
-        swept = jnp.where(known[k], apart + border, swept)
+        row = jnp.where(own, -1.0, swept[k])
+        rest = jnp.where(own[:, None] | own[None], 0.0, swept)
+        return jnp.where(known[k], rest - row[:, None] * row[None] / swept[k, k], swept)
+
+    swept = lax.fori_loop(0, len(cov), sweep, cov)
     return jnp.where(known[:, None] & known[None], -swept, 0.0)
+
+
+class Freed(NamedTuple):
+    """How much of the squared distance e' S⁻¹ e of a Gaussian vector goes away when one component may be anything.
+
+    `total` is the distance and `taken` what each component takes away, both over `largest`²: the largest component in
+    its own standard deviations is taken out before squaring, lest a wild value overflow.
+    """
+
+    largest: Float[Array, ""]
+    total: Float[Array, ""]
+    taken: Float[Array, " C"]
+
+
+def freed(value: Float[Array, " C"], cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> Freed:
+    """Of the `known` components; the others are marginalised out and take nothing away."""
+    own = jnp.eye(len(known))
+    sigma = jnp.sqrt((own * cov).sum(axis=1))
+    e = jnp.where(known, value / sigma, 0.0)
+    largest = jnp.maximum(jnp.abs(e).max(), 1e-300)
+    p = precision(cov / (sigma[:, None] * sigma[None]), known)
+    # P e
+    pull = p @ (e / largest)
+    # e' P e
+    total = jnp.maximum((e / largest * pull).sum(), 0.0)
+    # (P e)_k^2 / P_kk
+    taken = jnp.where(known, pull**2 / jnp.where(known, (own * p).sum(axis=1), 1.0), 0.0)
+    return Freed(largest, total, taken)

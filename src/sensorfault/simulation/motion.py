@@ -8,12 +8,24 @@ from jaxtyping import Float
 from sensorfault.simulation.noise import gauss_markov, smooth
 from sensorfault.simulation.route import STEP_M, Route
 
-LATERAL = 2.8  # comfortable lateral acceleration [m/s^2]
-LAUNCH, BRAKE = 1.6, 1.9  # comfortable longitudinal acceleration and deceleration [m/s^2]
-EASING_S = 1.6  # a pedal is worked over about this time: jerk stays below 5 m/s^3
-WAIT_S = (5.0, 30.0)  # at a light
 GRAVITY = 9.81  # [m/s^2]
-ROLL_PER_G, PITCH_PER_G = np.deg2rad(4.0), np.deg2rad(3.0)  # lean of the body on its springs
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How a vehicle is driven, and how it leans on its springs; as it is, a car in a town."""
+
+    lateral: float = 2.8  # comfortable acceleration to the side [m/s^2]
+    launch: float = 1.6  # comfortable acceleration [m/s^2]
+    brake: float = 1.9  # comfortable deceleration [m/s^2]
+    easing_s: float = 1.6  # a pedal is worked over about this time: jerk stays below 5 m/s^3
+    wait_s: tuple[float, float] = (5.0, 30.0)  # at a light
+    mood: tuple[float, float, float] = (0.92, 0.06, 80.0)  # speed over limit: mean, standard deviation, length [m]
+    roll_per_g: float = float(np.deg2rad(4.0))
+    pitch_per_g: float = float(np.deg2rad(3.0))
+
+
+CAR = Manner()
 
 
 @dataclass(frozen=True)
@@ -33,55 +45,56 @@ class Motion:
     heading: Float[np.ndarray, " T"]  # [rad], not wrapped
 
 
-def speed_limit(route: Route, rng: np.random.Generator) -> Float[np.ndarray, " M"]:
+def speed_limit(route: Route, rng: np.random.Generator, manner: Manner = CAR) -> Float[np.ndarray, " M"]:
     """Speed at each point of the route [m/s]: as fast as limit, curves and comfort allow, 0 at stops."""
-    mood = 0.92 + 0.06 * gauss_markov(rng, len(route.distance), STEP_M, 80.0)
-    # v² κ ≤ LATERAL
-    curve = LATERAL / np.maximum(np.abs(route.curvature), 1e-6)
+    mean, spread, length_m = manner.mood
+    mood = mean + spread * gauss_markov(rng, len(route.distance), STEP_M, length_m)
+    # v² κ ≤ lateral
+    curve = manner.lateral / np.maximum(np.abs(route.curvature), 1e-6)
     most = np.where(route.stop, 0.0, np.minimum((route.limit * mood) ** 2, curve))
     # v²(s) = min over earlier s' of most(s') + 2 a (s - s'), and from behind the same with the brakes
-    reach = 2 * LAUNCH * route.distance
+    reach = 2 * manner.launch * route.distance
     most = np.minimum.accumulate(most - reach) + reach
-    reach = 2 * BRAKE * route.distance
+    reach = 2 * manner.brake * route.distance
     most = np.maximum(np.minimum.accumulate((most + reach)[::-1])[::-1] - reach, 0.0)
     most[route.stop] = 0.0  # exactly
     return np.asarray(np.sqrt(most))
 
 
-def travel(route: Route, time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Motion:
+def travel(route: Route, time: Float[np.ndarray, " T"], rng: np.random.Generator, manner: Manner = CAR) -> Motion:
     """Drive the route from standstill; `time` [s] is even and starts at 0."""
     dt = float(time[1] - time[0])
-    v = speed_limit(route, rng)
+    v = speed_limit(route, rng, manner)
     # Constant acceleration over a step: Δt = 2 Δs / (v + v⁺); a stop lasts from its arrival to its leaving.
     arrival = np.concatenate(([0.0], np.cumsum(2 * STEP_M / (v[1:] + v[:-1]))))
-    wait = np.where(route.stop, rng.uniform(*WAIT_S, len(v)), 0.0)
+    wait = np.where(route.stop, rng.uniform(*manner.wait_s, len(v)), 0.0)
     leaving = arrival + np.cumsum(wait)
     clock = np.stack((leaving - wait, leaving), axis=1).ravel()
-    speed = smooth(np.interp(time, clock, np.repeat(v, 2)), round(2 * EASING_S / dt))
-    distance = _integral(speed, dt)
+    speed = smooth(np.interp(time, clock, np.repeat(v, 2)), round(2 * manner.easing_s / dt))
+    distance = integral(speed, dt)
 
     def along(x: Float[np.ndarray, " M"]) -> Float[np.ndarray, " T"]:
         return np.asarray(np.interp(distance, route.distance, x))
 
     # ψ' = v κ
     yaw_rate = speed * along(route.curvature)
-    heading = _integral(yaw_rate, dt)
+    heading = integral(yaw_rate, dt)
     climb = along(np.arctan(route.slope))
     level, rise = speed * np.cos(climb), speed * np.sin(climb)
     velocity = np.stack((level * np.cos(heading), level * np.sin(heading), rise), axis=1)
     forward, left, up = np.gradient(level, dt), level * yaw_rate, np.gradient(rise, dt)
     return Motion(
         time=time,
-        position=_integral(velocity, dt),
+        position=integral(velocity, dt),
         velocity=velocity,
         speed=speed,
         acceleration=np.stack((forward, left, up), axis=1),
-        roll=ROLL_PER_G * left / GRAVITY,
-        pitch=-PITCH_PER_G * forward / GRAVITY - climb,
+        roll=manner.roll_per_g * left / GRAVITY,
+        pitch=-manner.pitch_per_g * forward / GRAVITY - climb,
         heading=heading,
     )
 
 
-def _integral(x: Float[np.ndarray, "T *n"], step: float) -> Float[np.ndarray, "T *n"]:
+def integral(x: Float[np.ndarray, "T *n"], step: float) -> Float[np.ndarray, "T *n"]:
     """Trapezoids from the first row on, which becomes 0."""
     return np.concatenate((np.zeros_like(x[:1]), np.cumsum((x[1:] + x[:-1]) * step / 2, axis=0)))

@@ -3,7 +3,7 @@
 import equinox as eqx
 import jax.numpy as jnp
 
-from sensorfault.numerics.gaussian import precision
+from sensorfault.numerics.gaussian import freed
 from sensorfault.types import Residual, Score, Trust
 
 
@@ -22,23 +22,13 @@ class Mahalanobis(eqx.Module):
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
         valid = residual.valid
-        own = jnp.eye(len(valid))
-        sigma = jnp.sqrt((own * residual.cov).sum(axis=1))
-        e = jnp.where(valid, residual.value / sigma, 0.0)
-        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, lest a wild value overflow
-        p = precision(residual.cov / (sigma[:, None] * sigma[None]), valid)
-        # P e
-        pull = p @ (e / largest)
-        # e' P e
-        total = jnp.maximum((e / largest * pull).sum(), 0.0)
-        # (P e)_k^2 / P_kk
-        taken = jnp.where(valid, pull**2 / jnp.where(valid, (own * p).sum(axis=1), 1.0), 0.0)
-        square = taken.max() if self.single else total
+        own = freed(residual.value, residual.cov, valid)
+        square = own.taken.max() if self.single else own.total
         score = Score(
-            value=largest * jnp.sqrt(square)[None],
+            value=own.largest * jnp.sqrt(square)[None],
             valid=valid.any()[None],
             covers=valid[None],
-            blame=jnp.minimum(taken / jnp.where(total > 0, total, 1.0), 1.0)[None],
+            blame=jnp.minimum(own.taken / jnp.where(own.total > 0, own.total, 1.0), 1.0)[None],
         )
         return score, ()
 

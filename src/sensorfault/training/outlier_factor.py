@@ -1,0 +1,40 @@
+"""The frozen history of a local outlier factor."""
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.logs.table import LogError
+from sensorfault.numerics.outlier_factor import LocalDensity, density
+
+HISTORY, NEIGHBOURS = 1000, 20  # points kept, and k
+
+
+def fit_history(seen: Float[np.ndarray, "M F"], seed: int, history: int = HISTORY, k: int = NEIGHBOURS) -> LocalDensity:
+    """The density of `history` of the healthy features seen, of all satellites and runs together, drawn by the seed.
+
+    Rows with a NaN are left out; fewer than `history` are taken as they are.
+
+    Raises:
+        LogError: not more than k of them.
+    """
+    from scipy.spatial import KDTree
+
+    known = seen[np.isfinite(seen).all(axis=1)]
+    if len(known) <= k:
+        raise LogError(
+            f"{len(known)} healthy innovations are no history for {k} neighbours; give a longer healthy log, or a "
+            "smaller k."
+        )
+    if len(known) > history:
+        known = np.random.default_rng(seed).choice(known, history, replace=False)
+    points = known[np.lexsort(known.T[::-1])]
+    distance, index = KDTree(points).query(points, k + 1)
+    # of each point its k nearest others: itself is left out, or one as near where many are equal
+    own = index == np.arange(len(points))[:, None]
+    own[~own.any(axis=1), -1] = True
+    distance, index = (x[~own].reshape(-1, k) for x in (distance, index))
+    reach = distance[:, -1]
+    return LocalDensity(
+        jnp.asarray(points), jnp.asarray(reach), jnp.asarray(density(np.maximum(reach[index], distance))), k
+    )

@@ -1,0 +1,126 @@
+"""The local outlier factor against scikit-learn's, and windowed means against loops over the very samples."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from sklearn.neighbors import LocalOutlierFactor
+
+from laws.strict import strict
+from oracles.drifting import SIGMA, Log, scores
+from sensorfault.logs.table import LogError
+from sensorfault.monitor.statistic.cumulative_bank import CumulativeBank
+from sensorfault.monitor.statistic.means import Means
+from sensorfault.monitor.statistic.outlier_factor import OutlierFactor
+from sensorfault.monitor.statistic.windowed_outlier_factor import WindowedOutlierFactor
+from sensorfault.numerics.blocks import enough
+from sensorfault.numerics.outlier_factor import LocalDensity
+from sensorfault.training.outlier_factor import fit_history
+
+__all__ = ["strict"]
+
+LENGTHS, GAP_S, SPACING_S = (1.0, 10.0, 30.0), 8.0, 1.0
+SPREAD = np.array([1.0, 0.5, 0.25])
+factor = jax.jit(lambda history, asked: history.outlier_factor(asked))
+
+
+def peer(points: np.ndarray, k: int, asked: np.ndarray) -> np.ndarray:
+    return -LocalOutlierFactor(n_neighbors=k, novelty=True).fit(points).score_samples(asked)
+
+
+@pytest.mark.parametrize("features", [1, 2, 3])
+@pytest.mark.parametrize("k", [1, 20])
+def test_equals_scikit_learn(features: int, k: int) -> None:
+    rng = np.random.default_rng(features)
+    points = rng.standard_t(4, (1000, features))
+    asked = np.concatenate(
+        [
+            rng.standard_t(3, (500, features)),
+            1e6 * rng.standard_normal((20, features)),  # far out, where all distances are alike
+            points[:50],
+            np.zeros((1, features)),
+        ]
+    )
+    told = factor(fit_history(points, 0, k=k), asked)
+    np.testing.assert_allclose(told, peer(points, k, asked), rtol=1e-6)
+    assert told[500:520].min() > 100
+
+
+@pytest.mark.parametrize("features", [1, 3])
+def test_equal_points_are_treated_as_scikit_learn_does(features: int) -> None:
+    """30 times the same point, more than k: their density is bounded, and a point among them is none of the others'."""
+    rng = np.random.default_rng(9)
+    points = np.concatenate([rng.standard_normal((200, features)), np.full((30, features), 0.25)])
+    asked = np.concatenate([np.full((1, features), 0.25), rng.standard_normal((50, features))])
+    np.testing.assert_allclose(factor(fit_history(points, 0), asked), peer(points, 20, asked), rtol=1e-6)
+
+
+def test_on_a_grid_exactly_k_of_those_equally_far_count() -> None:
+    """Which of them is scikit-learn's secret, so the grid is one on which it makes no difference."""
+    points = np.arange(40.0)[:, None]
+    asked = np.array([[20.0], [19.5]])
+    np.testing.assert_allclose(factor(fit_history(points, 0, k=3), asked), peer(points, 3, asked), rtol=1e-6)
+
+
+def test_a_history_is_drawn_by_its_seed_and_knows_what_it_needs() -> None:
+    rng = np.random.default_rng(1)
+    seen = rng.standard_normal((3000, 1))
+    seen[::3] = np.nan
+    one, same, other = (fit_history(seen, seed, history=500) for seed in (3, 3, 4))
+    assert one.points.shape == (500, 1)
+    assert np.isin(one.points, seen).all()
+    np.testing.assert_array_equal(one.points, same.points)
+    assert not np.array_equal(one.points, other.points)
+    with pytest.raises(LogError, match="20 healthy innovations are no history for 20 neighbours"):
+        fit_history(seen[:30], 0)
+
+
+def history(features: int) -> LocalDensity:
+    return fit_history(np.random.default_rng(2).standard_t(5, (400, features)), 0)
+
+
+@pytest.mark.parametrize("raw", [False, True])
+def test_each_innovation_is_rated_alone(raw: bool) -> None:
+    log = Log(11)
+    told = scores(OutlierFactor(history(1), raw=raw), log)
+    asked = log.value / (1 if raw else SIGMA)
+    expected = peer(np.asarray(history(1).points), 20, asked.reshape(-1, 1)).reshape(-1, 2)
+    np.testing.assert_allclose(told, np.where(log.valid, expected, np.nan), rtol=1e-6)
+
+
+def means(spread: np.ndarray) -> Means:
+    return Means(
+        *(jnp.asarray(x) for x in (LENGTHS, spread, SPACING_S, GAP_S)), channels=2, slots=enough(30.0, SPACING_S)
+    )
+
+
+def mean_loop(log: Log, spread: np.ndarray) -> np.ndarray:
+    """Of the values less old than each window, as many as it should hold; those lacking since it began count 0."""
+    told = np.full((len(log.time), 2, len(LENGTHS)), np.nan)
+    for c in range(2):
+        rows, last = [], -np.inf
+        for k in log.seen(c, len(log.time) - 1):
+            t = log.time[k]
+            rows, last = [*(rows if t - last <= GAP_S else []), k], t
+            age = t - log.time[rows]
+            for w, length in enumerate(LENGTHS):
+                share = min(1.0, (t - log.time[rows[0]] + SPACING_S) / length)
+                e = log.value[rows, c][age <= length - SPACING_S / 2] / SIGMA[c]
+                told[k, c, w] = share * e.mean() / spread[w]
+    return told
+
+
+@pytest.mark.parametrize("gap_s", [0.0, 20.0])
+def test_the_bank_is_as_a_loop_says(gap_s: float) -> None:
+    log = Log(12, gap_s=gap_s)
+    expected = np.abs(mean_loop(log, SPREAD)).max(axis=2)
+    np.testing.assert_allclose(scores(CumulativeBank(means(SPREAD)), log), expected, rtol=1e-9)
+    assert np.nanmax(expected) > 10
+
+
+def test_the_windowed_factor_is_that_of_the_means() -> None:
+    log = Log(13, gap_s=20.0)
+    told = scores(WindowedOutlierFactor(history(3), means(SPREAD)), log)
+    asked = mean_loop(log, SPREAD)[log.valid]
+    np.testing.assert_allclose(told[log.valid], peer(np.asarray(history(3).points), 20, asked), rtol=1e-6)
+    assert np.isnan(told[~log.valid]).all()
