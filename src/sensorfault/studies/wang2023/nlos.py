@@ -91,6 +91,7 @@ def through(of: Town, way: Way, wheels: bool) -> Navigated:
         jnp.asarray(WHEEL_M_S),
         jnp.asarray(ASIDE_M_S),
         tuple(int(name[0] != "G") for name in of.names),
+        parts=1,
     )
     branch = Branch(Late() if way.late else Normalised(), Fixed(jnp.full(many, way.limit)))
     monitor = Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(many), tuple(range(many)), most=MOST)
@@ -99,17 +100,17 @@ def through(of: Town, way: Way, wheels: bool) -> Navigated:
 
 def scores(of: Town, run: Navigated) -> dict[str, float]:
     """Position over the whole drive but its start; what was found, where labels are, by innovations in metres."""
-    off = horizontal(np.asarray(run.position), of.position)[UNSCORED:]
-    tested = np.asarray(run.tested)
+    off = horizontal(run.position, of.position)[UNSCORED:]
+    tested = run.tested
     known = np.isfinite(of.nlos) & tested
-    refused, out = ~np.asarray(run.taken)[known], of.nlos[known] == 1
+    refused, out = ~run.taken[known], of.nlos[known] == 1
     return {
         "error_p50_m": float(np.quantile(off, 0.5)),
         "error_p95_m": float(np.quantile(off, 0.95)),
         "recall": float(refused[out].mean()),
         "far": float(refused[~out].mean()),
-        "rejected_fraction": float(1 - np.asarray(run.taken)[tested].mean()),
-    } | _ranked(of, np.asarray(run.innovation), tested)
+        "rejected_fraction": float(1 - run.taken[tested].mean()),
+    } | _ranked(of, run.innovation, tested)
 
 
 def _ranked(of: Town, score: Float[np.ndarray, "T S"], there: Bool[np.ndarray, "T S"]) -> dict[str, float]:
