@@ -16,34 +16,46 @@ from sensorfault.numerics.geodesy import ecef_to_geodetic, enu_axes
 from sensorfault.run import samples
 from sensorfault.types import Sample
 
-Numbers = np.ndarray | Array
-
 
 class Navigated(NamedTuple):
     """T epochs of C channels, as the filter ends each."""
 
-    position: Float[Numbers, "T 3"]  # ECEF [m]
-    innovation: Float[Numbers, "T C"]  # [SI]
-    sigma: Float[Numbers, "T C"]  # √S_ii
-    tested: Bool[Numbers, "T C"]
-    taken: Bool[Numbers, "T C"]
+    position: Float[np.ndarray, "*n T 3"]  # ECEF [m]
+    innovation: Float[np.ndarray, "*n T C"]  # [SI]
+    sigma: Float[np.ndarray, "*n T C"]  # √S_ii
+    tested: Bool[np.ndarray, "*n T C"]
+    taken: Bool[np.ndarray, "*n T C"]
 
 
 def navigated(monitor: Monitor, epochs: Log) -> Navigated:
     """A log of epochs through a monitor whose residual is `InsGnss`, from a fresh start."""
-    rows = samples(epochs.time, epochs.value, epochs.fresh, epochs.block)
-    return Navigated(*(np.asarray(part) for part in _run(monitor, rows)))
+    return Navigated(*(np.asarray(part) for part in _run(monitor, _rows(epochs))))
+
+
+def many(monitor: Monitor, epochs: Log, values: Float[np.ndarray, "N T C"]) -> Navigated:
+    """The same log N times with other values, at once."""
+    return Navigated(*(np.asarray(part) for part in _fleet(monitor, _rows(epochs), jnp.asarray(values))))
+
+
+def _rows(epochs: Log) -> Sample:
+    return samples(epochs.time, epochs.value, epochs.fresh, epochs.block)
 
 
 @jax.jit
-def _run(monitor: Monitor, rows: Sample) -> Navigated:
-    def one(state: MonitorState, sample: Sample) -> tuple[MonitorState, Navigated]:
+def _run(monitor: Monitor, rows: Sample) -> tuple[Array, ...]:
+    def one(state: MonitorState, sample: Sample) -> tuple[MonitorState, tuple[Array, ...]]:
         after, report = monitor.step(state, sample)
         residual, taken = report.residual, report.trust.measured
         sigma = jnp.sqrt(jnp.diagonal(residual.cov))
-        return after, Navigated(after.residual.nav.position, residual.value, sigma, residual.valid, taken)
+        return after, (after.residual.nav.position, residual.value, sigma, residual.valid, taken)
 
-    done: Navigated = lax.scan(one, monitor.init(), rows)[1]
+    done: tuple[Array, ...] = lax.scan(one, monitor.init(), rows)[1]
+    return done
+
+
+@jax.jit
+def _fleet(monitor: Monitor, rows: Sample, values: Float[Array, "N T C"]) -> tuple[Array, ...]:
+    done: tuple[Array, ...] = jax.vmap(lambda value: _run(monitor, rows._replace(value=value)))(values)
     return done
 
 
