@@ -87,10 +87,21 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
     Raises:
         LogError: the log is empty.
     """
+    return replay_on(monitor, monitor.init(), log, progress)[1]
+
+
+def replay_on(
+    monitor: Monitor, state: MonitorState, log: Log, progress: Progress | None = None
+) -> tuple[MonitorState, Replayed]:
+    """The same from any state, as after the part of the log before this one; and the state after it.
+
+    Raises:
+        LogError: the log is empty.
+    """
     total = len(log)
     if not total:
         raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
-    (monitor, state), told = _strong((monitor, monitor.init())), []
+    (monitor, state), told = _strong((monitor, state)), []
     for start in range(0, total, CHUNK):
         rows = np.minimum(np.arange(start, start + CHUNK), total - 1)
         real = np.arange(start, start + CHUNK) < total
@@ -101,4 +112,4 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
         if progress:
             progress(min(1.0, (start + CHUNK) / total))
     example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
-    return unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))
+    return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))
