@@ -94,12 +94,21 @@ def parquet(path: Path) -> Path:
     return path
 
 
-def timed(path: Path, vehicle: VehicleFile) -> float:
+def timed(path: Path, vehicle: VehicleFile, times: int = TIMES) -> float:
     def afresh() -> None:
         path.touch()  # a reader of several tables remembers the last file
         read(path, vehicle)
 
-    return float(seconds(afresh, TIMES).min())
+    return float(seconds(afresh, times).min())
+
+
+def in_turn(case: Case) -> tuple[float, float]:
+    """The best of either [s], each by turns, so that what else the machine does meets both."""
+    vehicle, took, bare = guess(case.path), [], []
+    for _ in range(case.times):
+        took.append(timed(case.path, vehicle, 1))
+        bare.append(float(seconds(lambda: case.bare(case.path), 1)[0]))
+    return min(took), min(bare)
 
 
 def main() -> int:
@@ -113,8 +122,7 @@ def main() -> int:
         bars.check(f"{ROWS} rows of CSV in {took:.2f} s, bar {BAR_ROWS_S:g}", took < BAR_ROWS_S)
         path.unlink()
         for case in cases(folder):
-            took = timed(case.path, guess(case.path))
-            bare = float(seconds(lambda case=case: case.bare(case.path), case.times).min())
+            took, bare = in_turn(case)
             print(f"{case.name:28} {case.path.stat().st_size / MEGABYTE:5.0f} MB: read {took:.2f} s, bare {bare:.2f} s")
             bars.check(
                 f"{case.name}: {took / bare:.2f} times the bare library's time, bar {BAR_TIMES:g}",

@@ -7,12 +7,13 @@ from jaxtyping import Bool, Float
 
 from sensorfault.detection import Detection, Trace
 from sensorfault.events import Event
+from sensorfault.follow import Follower, watch_of
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.table import Log
-from sensorfault.model import MOTION, TOGETHER, Model
+from sensorfault.model import Model
 from sensorfault.replay import Progress, Replayed, replay_log
 from sensorfault.run import Now, Stepper, nothing_yet
-from sensorfault.tracker import QUIET_S, Tracker, Watch
+from sensorfault.tracker import Tracker
 from sensorfault.types import FAULT
 
 
@@ -24,6 +25,8 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
     """
     log = model.take(log)
     told = replay_log(model.monitor, log, progress)
+    follower = Follower(model)
+    follower.take(log, told)
     doubtful = np.isnan(log.value) | log.fresh | (np.asarray(told.channel) == FAULT)
     lost = ~np.asarray(told.believed) & doubtful
     repaired = np.where(lost, np.nan, np.asarray(told.value))
@@ -37,7 +40,7 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
         motion=np.asarray(told.motion),
         repaired=repaired,
         traces=_traces(model, told),
-        events=tuple(_events(model, log, told)),
+        events=tuple(follower.events),
     )
 
 
@@ -56,7 +59,7 @@ class Live:
         framing = model.framing
         self._gather = Gather(framing) if framing else None
         self._step = Stepper(model.monitor, framing.nothing if framing else ())
-        self._watch = _watch(model)
+        self._watch = watch_of(model)
         self._tracker = Tracker(self._watch)
         held = {sensor.name: sensor.held for sensor in model.sensors}
         names = [channel.sensor for channel in model.channels]
@@ -115,60 +118,6 @@ class Live:
             fresh[channels] = (value[channels] != self._last[channels]).any()
         self._last = np.where(np.isfinite(value), value, self._last)
         return fresh
-
-
-def _watch(model: Model) -> Watch:
-    paths = [channel.path for channel in model.channels]
-    return Watch(
-        model.method,
-        tuple(channel.sensor for channel in model.channels),
-        tuple(channel.name for channel in model.channels),
-        model.period_s,
-        model.silent_after_s,
-        np.asarray(model.sigma),
-        tuple(_examined(path, paths) for _, path in model.tests),
-        model.tick_s,
-    )
-
-
-def _examined(path: str | None, paths: list[str]) -> tuple[int, ...] | str | None:
-    return path if path is None or path == MOTION else tuple(paths.index(one) for one in path.split(TOGETHER))
-
-
-def _events(model: Model, log: Log, told: Replayed) -> list[Event]:
-    watch = _watch(model)
-    tracker = Tracker(watch)
-    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
-    columns = (
-        told.channel,
-        told.sensor,
-        told.sample,
-        told.motion,
-        score,
-        limit,
-        told.value,
-        told.residual,
-        told.valid,
-        told.silence,
-    )
-    arrays = [np.asarray(column) for column in columns]
-    gap_s = np.diff(log.time, prepend=log.time[:1])
-    silent = (gap_s > watch.hole_s) | (np.asarray(told.silence) > watch.silent_after_s).any(axis=1)
-    marked = (np.asarray(told.sample) == FAULT) | (np.asarray(told.motion) == FAULT) | silent
-    ended: list[Event] = []
-    for i in _interesting(log.time, marked):
-        now = Now(*(array[i] for array in arrays))
-        ended += tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
-    return sorted(ended + tracker.open(), key=lambda event: event.start_s)
-
-
-def _interesting(time: Float[np.ndarray, " T"], marked: Bool[np.ndarray, " T"]) -> Any:
-    """Rows a tracker must see: the first, the marked ones, those for QUIET_S after, and the one that ends them."""
-    last = np.maximum.accumulate(np.where(marked, time, -np.inf))
-    near = time - last <= QUIET_S
-    near[1:] |= near[:-1]
-    near[0] = True
-    return np.flatnonzero(near)
 
 
 def _traces(model: Model, told: Replayed) -> tuple[Trace, ...]:

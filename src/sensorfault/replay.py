@@ -88,10 +88,21 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
     Raises:
         LogError: the log is empty.
     """
+    return replay_on(monitor, monitor.init(), log, progress)[1]
+
+
+def replay_on(
+    monitor: Monitor, state: MonitorState, log: Log, progress: Progress | None = None
+) -> tuple[MonitorState, Replayed]:
+    """The same from any state, as after the part of the log before this one; and the state after it.
+
+    Raises:
+        LogError: the log is empty.
+    """
     total = len(log)
     if not total:
         raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
-    (monitor, state), told = _strong((monitor, monitor.init())), []
+    (monitor, state), told = _strong((monitor, state)), []
     long = EPOCHS if log.block else CHUNK
     for start in range(0, total, long):
         rows = np.minimum(np.arange(start, start + long), total - 1)
@@ -103,4 +114,4 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
         if progress:
             progress(min(1.0, (start + long) / total))
     example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
-    return unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))
+    return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))

@@ -1,10 +1,16 @@
 """`sensorfault detect`: the faults of a log."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import long, options, show, work
+
+if TYPE_CHECKING:
+    from sensorfault.events import Event
+    from sensorfault.logs import Log
 
 
 @click.command("detect")
@@ -21,6 +27,13 @@ from sensorfault.cli import options, show, work
     help="Also write the events: .jsonl, .csv or .parquet; .mcap, annotations for viewers (with the log's messages, "
     "if it is an .mcap); .bag (ROS 1) or a new folder (ROS 2) of DiagnosticArray. May be given several times.",
 )
+@click.option(
+    "--by-parts/--whole",
+    "by_parts",
+    default=None,
+    help="Read CSV, Parquet, MCAP or a ROS bag part by part, in memory that does not grow with the file: events only, "
+    "by a --model and a vehicle.toml. By itself where the file is larger than 1 GB.",
+)
 @click.option("--report", "report_path", type=click.Path(path_type=Path), help="Also write a report page (HTML).")
 @options.seed_option
 @options.json_option
@@ -31,6 +44,7 @@ def command(
     method: str,
     learn: float,
     outs: tuple[Path, ...],
+    by_parts: bool | None,
     report_path: Path | None,
     seed: int,
     json_path: str | None,
@@ -39,21 +53,34 @@ def command(
 
     Without --model the method is fitted on the log's own beginning, which is then taken as healthy.
     """
-    from sensorfault.export import check, write_events
+    from sensorfault.export import check
 
     for out in outs:
         check(out)
     work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
+    if long.by_parts(log, vehicle, by_parts, model_path, report_path):
+        assert model_path is not None
+        told = long.detect(log, vehicle, model_path)
+        _write(told.events, told.log, log, outs, json_path)
+        show.write_json(json_path, long.answer(told))
+        return
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     found = work.detect(ready.model, ready.judged)
-    show.events(found.events, f"Faults in {table.name}", answer=json_path != "-")
-    for out in outs:
-        write_events(found.events, found.log, out, log if log.suffix.lower() == ".mcap" else None)
-        show.say(f"Wrote {out}.")
+    _write(found.events, found.log, log, outs, json_path)
     if report_path is not None:
         from sensorfault.evaluation.page import write_page
 
         write_page(found, report_path, summary=ready.sentences)
         show.say(f"Wrote {report_path}.")
     show.write_json(json_path, work.answer(table, found, ready))
+
+
+def _write(events: "Sequence[Event]", table: "Log", log: Path, outs: Sequence[Path], json_path: str | None) -> None:
+    """The events as a table, and to the files asked for."""
+    from sensorfault.export import write_events
+
+    show.events(events, f"Faults in {table.name}", answer=json_path != "-")
+    for out in outs:
+        write_events(events, table, out, log if log.suffix.lower() == ".mcap" else None)
+        show.say(f"Wrote {out}.")

@@ -59,7 +59,7 @@ def read(
     damage = tuple(dict.fromkeys(one.sentence(source.path) for source in sources for one in source.damage))
     said = [note for stream in streams for note in stream.notes]
     all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
-    return _log(known, streams, clock, all_notes, damage)
+    return log_of(known, streams, clock, all_notes, damage)
 
 
 def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callable[[float], None]) -> list[Source]:
@@ -76,7 +76,7 @@ def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callabl
     return [found[entry.name] for entry, _ in pairs]
 
 
-def _log(
+def log_of(
     vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tuple[str, ...], damage: tuple[str, ...]
 ) -> Log:
     """The streams' channels in the order of the vehicle file."""

@@ -1,20 +1,23 @@
 """CSV and its kin: comma, semicolon, tab or blanks between the cells, with a header or without."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
 import polars as pl
 
 from sensorfault.logs.readers.dialect import MISSING, Dialect, is_number, sniff
-from sensorfault.logs.readers.source import Source
+from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.table import LogError
 
 _PADDING = ' \t\r"'
 _SAMPLE_ROWS = 1000
+_PART_BYTES = 1 << 24
 _EXACT_IN_FLOAT = 2**53
 Holds = Literal["text", "whole", "number"]  # what a column's cells are; whole: a float would round them
 _DTYPES = {"text": pl.String(), "whole": pl.Int64(), "number": pl.Float64()}
+_HOLDS: dict[pl.DataType, Holds] = {pl.String(): "text", pl.Int64(): "whole", pl.Float64(): "number"}
 
 
 def read_csv(path: Path) -> Source:
@@ -25,29 +28,68 @@ def read_csv(path: Path) -> Source:
     """
     dialect = sniff(path)
     content, skip = _content(path, dialect)
+    return _source(path, dialect, _table(path, content, dialect, skip))
+
+
+def rest_of_csv(path: Path, ask: Ask) -> Source:
+    """The last lines of a text table, once all before them have been handed on to `ask.part`.
+
+    Raises:
+        LogError: as `read_csv`.
+    """
+    assert ask.part is not None
+    dialect = sniff(path)
+    line, size, before, holds = dialect.skip + 1, path.stat().st_size, None, None
+    with path.open("rb") as file:
+        for _ in range(dialect.skip):
+            file.readline()
+        while lines := file.readlines(_PART_BYTES):
+            if before is not None:
+                ask.part({"": Source(path, _not_blank(before), first_line=line)})
+                line += len(before)
+            content = b"".join(lines) if dialect.delimiter is not None else _even(lines)
+            before = _table(path, content, dialect, 0, holds)
+            holds = [_HOLDS[dtype] for dtype in before.dtypes]
+            ask.tell(file.tell() / size)
+    assert before is not None  # a dialect has a row
+    return replace(_source(path, dialect, before), first_line=line)
+
+
+def _table(
+    path: Path, content: Path | bytes, dialect: Dialect, skip: int, holds: list[Holds] | None = None
+) -> pl.DataFrame:
     try:
-        frame = _parse(content, dialect, skip, _holds(content, dialect, skip))
+        return _parse(content, dialect, skip, holds or _holds(content, dialect, skip))
     except pl.exceptions.PolarsError:
         # Some cell is not what the first rows promised: read all as text and keep what is not a number as it is.
-        frame = _numbers(_parse_text(path, content, dialect, skip))
-    blank = frame.select(pl.all_horizontal(pl.all().is_null())).to_series()
+        return _numbers(_parse_text(path, content, dialect, skip))
+
+
+def _source(path: Path, dialect: Dialect, frame: pl.DataFrame) -> Source:
+    """The rows of the table, or its last, without a line that is cut off."""
     notes = []
     if dialect.first_cut:
         notes.append(f"{path.name}: the first line is cut off and was left out.")
     if _last_cut(path, dialect, frame):
-        frame, blank = frame[:-1], blank[:-1]
+        frame = frame[:-1]
         notes.append(f"{path.name}: the last line is cut off and was left out.")
-    if blank.any():
-        frame = frame.filter(~blank)
-    return Source(path, frame, first_line=dialect.skip + 1, notes=tuple(notes))
+    return Source(path, _not_blank(frame), first_line=dialect.skip + 1, notes=tuple(notes))
+
+
+def _not_blank(frame: pl.DataFrame) -> pl.DataFrame:
+    blank = frame.select(pl.all_horizontal(pl.all().is_null())).to_series()
+    return frame.filter(~blank) if blank.any() else frame
 
 
 def _content(path: Path, dialect: Dialect) -> tuple[Path | bytes, int]:
     """The file itself, or its bytes with one comma for each run of blanks: polars wants one delimiter byte."""
     if dialect.delimiter is not None:
         return path, dialect.skip
-    lines = path.read_bytes().splitlines()[dialect.skip :]
-    return b"\n".join(re.sub(rb"[ \t]+", b",", line.strip()) for line in lines), 0
+    return _even(path.read_bytes().splitlines()[dialect.skip :]), 0
+
+
+def _even(lines: list[bytes]) -> bytes:
+    return b"\n".join(re.sub(rb"[ \t]+", b",", line.strip()) for line in lines)
 
 
 def _parse(

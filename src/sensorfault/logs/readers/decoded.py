@@ -36,6 +36,8 @@ class Recording:
         topic, kind, decode = known
         try:
             self._topics.take(topic, kind, received_ns, decode(raw))
+        except LogError:  # what takes the parts says so
+            raise
         except Exception:  # a damaged message fails in as many ways as it can be damaged
             return False
         return True
@@ -64,7 +66,7 @@ class Recording:
             for what, (count, first) in self._bad.items()
         )
         damage = [*dict.fromkeys(self.damage), *bad]
-        if not tables and self.ask.tables is None:
+        if not tables and self.ask.tables is None and not self._topics.handed_on:
             if damage:
                 why = f" ({damage[0].what.rstrip(',')} at {damage[0].where}); copy it from the vehicle again"
             else:

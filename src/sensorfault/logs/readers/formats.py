@@ -12,7 +12,7 @@ from sensorfault.logs.readers.attitude import with_attitude
 from sensorfault.logs.readers.bag1 import read_bag1
 from sensorfault.logs.readers.bag2 import first_part, read_bag2
 from sensorfault.logs.readers.can_bus import read_can
-from sensorfault.logs.readers.csv import read_csv
+from sensorfault.logs.readers.csv import read_csv, rest_of_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
 from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
 from sensorfault.logs.readers.gnss.leader import observations_beside
@@ -30,7 +30,7 @@ from sensorfault.logs.readers.mavlink import read_tlog
 from sensorfault.logs.readers.mcap import read_mcap
 from sensorfault.logs.readers.mdf import looks_mdf, read_mdf
 from sensorfault.logs.readers.npy import called_by, read_npy
-from sensorfault.logs.readers.parquet import read_parquet
+from sensorfault.logs.readers.parquet import read_parquet, rest_of_parquet
 from sensorfault.logs.readers.rtklib import read_pos
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
 from sensorfault.logs.readers.ulog import read_ulog
@@ -51,7 +51,7 @@ class Format:
     `names`: what its files are called, `*.csv`, in lower case. `read`: a file -> its tables, as far as it can be read.
     `looks`: whether a file that begins so (4096 bytes) is one, where several formats call their files alike; the first
     that says so takes it, else the first that has no `looks`. `leader`: of files that only together are one log, the
-    one that stands for them.
+    one that stands for them. `parts`: whether it hands on a long file part by part, if asked to.
     """
 
     title: str
@@ -59,6 +59,7 @@ class Format:
     read: Callable[[Path, Ask], Tables]
     looks: Callable[[bytes], bool] | None = None
     leader: Callable[[Path], Path] = _itself
+    parts: bool = False
 
     def may_be(self, path: Path) -> bool:
         """Whether its files are called so."""
@@ -70,6 +71,11 @@ def _one(read: Callable[[Path], Source]) -> Callable[[Path, Ask], Tables]:
     return lambda path, ask: {"": read(path)}
 
 
+def _long(read: Callable[[Path], Source], rest: Callable[[Path, Ask], Source]) -> Callable[[Path, Ask], Tables]:
+    """The same for a format whose long files can be handed on part by part."""
+    return lambda path, ask: {"": read(path) if ask.part is None else rest(path, ask)}
+
+
 def _once(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
     """The same reader, which remembers the last file: first one looks at what it holds, then one takes it."""
 
@@ -78,6 +84,8 @@ def _once(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
         return read(path, ask)
 
     def reader(path: Path, ask: Ask) -> Tables:
+        if ask.part is not None:  # nothing to remember of what is handed on
+            return read(path, ask)
         stat = path.stat()
         return remembered(path, stat.st_mtime_ns, stat.st_size, ask)
 
@@ -85,18 +93,18 @@ def _once(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
 
 
 FORMATS = (
-    Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), _one(read_csv)),
+    Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), _long(read_csv, rest_of_csv), parts=True),
     Format("libRSF measurements", ("*.txt",), _once(read_librsf), looks_librsf),
     Format("smartLoc measurements", ("*.csv",), _once(read_smartloc), looks_smartloc),
     Format("UTIAS measurements", ("*.dat",), _one(read_utias), looks_utias),
-    Format("Parquet", ("*.parquet",), _one(read_parquet)),
+    Format("Parquet", ("*.parquet",), _long(read_parquet, rest_of_parquet), parts=True),
     Format("RTKLIB solution", ("*.pos",), _one(read_pos)),
     Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), _once(read_mat)),
     Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
-    Format("ROS 1 bag", ("*.bag",), _once(read_bag1)),
-    Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part),
-    Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part),
+    Format("ROS 1 bag", ("*.bag",), _once(read_bag1), parts=True),
+    Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part, parts=True),
+    Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part, parts=True),
     Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
     Format("ArduPilot DataFlash text", ("*.log",), _once(read_dataflash_text), looks_dataflash_text),
     Format("MAVLink telemetry", ("*.tlog",), _once(read_tlog)),
@@ -171,7 +179,14 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
         if form is None:
             known = ", ".join(SUFFIXES)
             raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {known}.")
-        tables = read_unpacked(path, lambda file: form.read(file, ask)) if is_packed(path) else form.read(path, ask)
+        part = ask.part
+        asked = replace(ask, part=lambda tables: part(_finished(tables))) if part is not None else ask
+        tables = read_unpacked(path, lambda file: form.read(file, asked)) if is_packed(path) else form.read(path, asked)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
+    return _finished(tables)
+
+
+def _finished(tables: Tables) -> Tables:
+    """Each table with its name, and with what its columns say in another way."""
     return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}

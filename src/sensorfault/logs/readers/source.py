@@ -25,10 +25,15 @@ class Damage:
 
 @dataclass(frozen=True)
 class Ask:
-    """What a reader is asked. `tables`: those that are needed, None for all. `tell`: hears the share read, 0 to 1."""
+    """What a reader is asked. `tables`: those that are needed, None for all. `tell`: hears the share read, 0 to 1.
+
+    `part`: takes what has been read of a long file whenever that is PART numbers; the reader then returns the rest.
+    Formats that can say so: `Format.parts`.
+    """
 
     tables: frozenset[str] | None = None
     tell: Callable[[float], None] = field(default=lambda share: None, compare=False)
+    part: "Callable[[Tables], None] | None" = None
 
     def wants(self, table: str) -> bool:
         """Whether a table need be read."""
@@ -36,6 +41,7 @@ class Ask:
 
 
 ALL = Ask()
+PART = 1 << 21  # numbers: 16 MB of them
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import polars as pl
 
 from sensorfault.logs.readers.fields import Fields
 from sensorfault.logs.readers.ros_types import si_unit_of
-from sensorfault.logs.readers.source import Ask, Source, Tables
+from sensorfault.logs.readers.source import PART, Ask, Source, Tables
 
 RECEIVED, STAMP = "received_time", "header.stamp"
 _APART_S = 3600.0  # stamps so far from the recording's clock are of another clock
@@ -30,12 +30,24 @@ class Topics:
         self.path, self.ask, self.unit_of = path, ask, unit_of
         self._topics: dict[str, _Topic] = {}
         self._unknown: dict[str, str] = {}
+        self._numbers = 0  # gathered since the last part
+        self.handed_on = False
 
     def take(self, topic: str, kind: str, received_ns: int, message: Any) -> None:
         """One decoded message."""
         if topic not in self._topics:
             self._topics[topic] = _Topic(kind, message)
         self._topics[topic].take(received_ns, message)
+        self._numbers += len(self._topics[topic].fields.names)
+        if self.ask.part is not None and self._numbers >= PART:
+            self._hand_on(self.ask.part)
+
+    def _hand_on(self, part: Callable[[Tables], None]) -> None:
+        """All that has been gathered, which is then forgotten."""
+        part(self.tables()[0])
+        for of_it in self._topics.values():
+            of_it.clear()
+        self._numbers, self.handed_on = 0, True
 
     def cannot(self, topic: str, why: str) -> None:
         """A topic whose messages nobody can decode."""
@@ -50,7 +62,8 @@ class Topics:
             if len(of_it.fields.names) == 0:
                 bare.append(f"{topic} ({of_it.kind})")
                 continue
-            tables[topic] = of_it.table(self.path, topic, self.unit_of)
+            if of_it.rows or not self.handed_on:
+                tables[topic] = of_it.table(self.path, topic, self.unit_of)
             cut += [f"{topic}.{field}" for field in of_it.fields.left_out]
         unknown = [f"{topic} ({why})" for topic, why in sorted(self._unknown.items())]
         for what, listed in (
@@ -67,6 +80,13 @@ class _Topic:
     def __init__(self, kind: str, first: Any) -> None:
         self.kind, self.fields = kind, Fields(first)
         self._stamp = None if isinstance(first, dict) or not _stamp_ns(first) else attrgetter(f"{STAMP}")
+        self.clear()
+
+    @property
+    def rows(self) -> int:
+        return len(self._received)
+
+    def clear(self) -> None:
         self._received, self._stamps, self._rows = array("q"), array("q"), array("d")
 
     def take(self, received_ns: int, message: Any) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import polars as pl
 
 from sensorfault.logs.phrase import times
-from sensorfault.logs.readers.native import native
+from sensorfault.logs.readers.native import native_fields
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
 from sensorfault.logs.readers.telling import open_telling
@@ -106,5 +106,6 @@ def _called(topic: Any) -> str:
 def _table(path: Path, topic: Any) -> Source:
     """One topic's fields as columns; padding is none."""
     fields = {name: field for name, field in topic.data.items() if not name.startswith("_padding")}
-    frame = pl.DataFrame({name: pl.Series(name, native(field), nan_to_null=False) for name, field in fields.items()})
+    columns = native_fields(fields)
+    frame = pl.DataFrame({name: pl.Series(name, column, nan_to_null=False) for name, column in columns.items()})
     return Source(path, frame, _TIME, "us")

@@ -1,0 +1,29 @@
+"""A long log, judged part by part: the events are those of the log as a whole."""
+
+from pathlib import Path
+
+import pytest
+
+import fitted
+from sensorfault.detector import detect
+from sensorfault.logs import read, write
+from sensorfault.logs.readers import csv
+from sensorfault.long_log import detect_long
+
+
+def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 100_000)
+    path = tmp_path / "drive.csv"
+    write(fitted.lying().log, path)
+    whole = detect(fitted.model(), read(path))
+    heard: list[float] = []
+    told = detect_long(fitted.model(), path, tell=heard.append)
+    assert len(heard) > 5
+    assert told.rows == len(whole.log)
+    assert told.end_s == pytest.approx(whole.log.time[-1])
+    assert len(told.events) == len(whole.events) > 5
+    for mine, theirs in zip(told.events, whole.events, strict=True):
+        assert (mine.sensor, mine.channel, mine.kind) == (theirs.sensor, theirs.channel, theirs.kind)
+        assert mine.start_s == pytest.approx(theirs.start_s, abs=1e-6)
+        assert mine.end_s == pytest.approx(theirs.end_s, abs=1e-6)
+        assert mine.peak_score == pytest.approx(theirs.peak_score)
