@@ -20,6 +20,7 @@ from sensorfault.vehicles.train import CarrierNoise, ElevationNoise, Grade
 
 JUMP_M = 50.0  # every pseudorange further off than this and six of its sigmas: the receiver's clock has jumped
 LOST_M = 1000.0  # with a position no better than this it begins anew
+NEAR_EARTH_M = 1e5  # further from its surface a filter has run away, whatever it thinks of itself
 LEAST = 4  # satellites that tell a position
 HOLES = 0.2  # share of the time without inertial rows in which no attitude is taken
 DOUBT = 1.5  # by which standard deviations grow after an epoch in which most were refused
@@ -307,7 +308,9 @@ class InsGnss(eqx.Module):
     def _begun(self, after: _Belief, found: Bool[Array, ""]) -> _Belief:
         """With a position found in one epoch a filter of position and velocity begins; lost, it begins anew."""
         first = alignment.moving(self.states)
-        lost = (after.phase >= MOVING) & (jnp.stack([after.cov[i, i] for i in (6, 7, 8)]).max() > LOST_M**2)
+        vague = jnp.stack([after.cov[i, i] for i in (6, 7, 8)]).max() > LOST_M**2
+        height = jnp.sqrt((after.nav.position**2).sum()) - alignment.EARTH_M
+        lost = (after.phase >= MOVING) & (vague | (jnp.abs(height) > NEAR_EARTH_M))
         still = Navigation(jnp.eye(3), jnp.zeros(3), after.nav.position)
         fresh = found | lost | (after.phase < MOVING)
         return after._replace(
