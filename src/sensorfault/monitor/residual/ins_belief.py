@@ -86,7 +86,7 @@ def _stretches(belief: Belief, epoch: Epoch, parts: int) -> list[Rows]:
     """The inertial rows without their biases, in so many stretches of the same length."""
     per = -(-epoch.dt.shape[0] // parts)
     more = per * parts - epoch.dt.shape[0]
-    rows = Rows(epoch.gyro - belief.own.gyro, epoch.force - belief.own.force, epoch.dt, epoch.ok)
+    rows = Rows(epoch.gyro - belief.own.gyro[None], epoch.force - belief.own.force[None], epoch.dt, epoch.ok)
     cut = jax.tree.map(
         lambda x: jnp.concatenate([x, jnp.zeros((more, *x.shape[1:]), x.dtype)]).reshape(parts, per, *x.shape[1:]),
         rows,
