@@ -14,9 +14,10 @@ from sensorfault.model import Model, owners
 from sensorfault.monitor.decision.exceed import Exceed
 from sensorfault.monitor.monitor import Branch, Monitor
 from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.ins_gnss import LEAST, InsGnss
+from sensorfault.monitor.residual.ins_gnss import InsGnss
 from sensorfault.monitor.statistic.normalised import Normalised
 from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.numerics.alignment import LEAST
 from sensorfault.replay import replay_log
 from sensorfault.stage import Stage
 from sensorfault.vehicles.train import ElevationNoise, Grade
