@@ -14,7 +14,7 @@ def native(vector: np.ndarray) -> np.ndarray:
 
 def native_fields(fields: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The same of all fields of an array of records, equally long: each record is fetched from memory once."""
-    columns = {name: np.empty(len(field), _wide(field)) for name, field in fields.items()}
+    columns: dict[str, np.ndarray] = {name: np.empty(len(field), _wide(field)) for name, field in fields.items()}
     pairs = [(columns[name], field) for name, field in fields.items()]
     for start in range(0, max(map(len, fields.values()), default=0), _ROWS):
         rows = slice(start, start + _ROWS)
