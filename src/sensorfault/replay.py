@@ -18,6 +18,7 @@ from sensorfault.run import samples
 from sensorfault.types import Report, Sample
 
 CHUNK = 8192
+EPOCHS = 512  # of a log with a block, whose rows are long and few
 
 Progress = Callable[[float], None]
 Numbers = np.ndarray | Array  # on the device while it runs, NumPy afterwards
@@ -102,14 +103,15 @@ def replay_on(
     if not total:
         raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
     (monitor, state), told = _strong((monitor, state)), []
-    for start in range(0, total, CHUNK):
-        rows = np.minimum(np.arange(start, start + CHUNK), total - 1)
-        real = np.arange(start, start + CHUNK) < total
+    long = EPOCHS if log.block else CHUNK
+    for start in range(0, total, long):
+        rows = np.minimum(np.arange(start, start + long), total - 1)
+        real = np.arange(start, start + long) < total
         block = jax.tree.map(lambda array, rows=rows: array[rows], log.block)
         chunk = samples(log.time[rows], log.value[rows], log.fresh[rows], block)
         state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
         told.append([np.asarray(part) for part in kept])
         if progress:
-            progress(min(1.0, (start + CHUNK) / total))
+            progress(min(1.0, (start + long) / total))
     example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
     return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))

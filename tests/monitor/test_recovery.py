@@ -4,6 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from monitor.scripted import branch, each, says, script, walk
+from sensorfault.monitor.recovery.readmit import Readmit
 from sensorfault.monitor.recovery.rebuild import Rebuild
 from sensorfault.types import FAULT
 
@@ -63,3 +64,42 @@ def test_rebuild_leaves_alone_what_only_a_window_accuses() -> None:
     assert told.reports.trust.measured.all()
     np.testing.assert_array_equal(told.reports.trust.value[:, 0], [1, 5])
     np.testing.assert_array_equal(told.reports.trust.learn[:, 0], [True, False])
+
+
+def readmitting(channels: int, readmit_s: float, gap_s: float = 1.5):
+    recovery = Readmit(jnp.asarray(readmit_s), jnp.asarray(gap_s), channels)
+    return says([branch(each(channels))], tuple(range(channels)), recovery=recovery)
+
+
+def test_readmit_takes_in_again_what_has_passed_its_tests_for_long_enough() -> None:
+    """Without a break: an accusation begins the time anew, and so does a silence; neither concerns another channel."""
+    accused = [[0, 0], [2, 0], [0, 0], [2, 0], [0, 0], [0, 0], [0, 0], [0, 0]]
+    value = np.arange(16.0).reshape(8, 2)
+    told = walk(readmitting(2, 2.0), script(accused, value))
+    trust = told.reports.trust
+    np.testing.assert_array_equal(trust.measured[:, 0], [True, False, False, False, False, False, True, True])
+    assert trust.measured[:, 1].all()
+    assert not trust.filled.any()
+    assert not (trust.learn[:, 0] & ~trust.measured[:, 0]).any()
+    np.testing.assert_array_equal(told.states.residual[:, 0], [0, 0, 0, 0, 0, 0, 12, 14])
+
+
+def test_readmit_counts_only_tests_passed() -> None:
+    """Hidden for four seconds, it is as suspect as before, and begins its time anew."""
+    value = np.ones((10, 1))
+    value[3:7] = NAN
+    told = walk(readmitting(1, 2.0), script([[0], [2], [0], [0], [0], [0], [0], [0], [0], [0]], value))
+    np.testing.assert_array_equal(told.reports.trust.measured[:, 0], [True, *[False] * 8, True])
+
+
+def test_readmit_does_not_try_another_source() -> None:
+    rows = script([[0], [2], [0], [0]], np.ones((4, 1)))
+    rows = rows._replace(born=np.array([[False], [False], [True], [False]]))
+    told = walk(readmitting(1, 100.0), rows)
+    np.testing.assert_array_equal(told.reports.trust.measured[:, 0], [True, False, True, True])
+
+
+def test_readmit_at_once_is_drop() -> None:
+    rows = script([[0], [2], [0], [2]], np.arange(4.0)[:, None])
+    told = [walk(monitor, rows).reports.trust for monitor in (readmitting(1, 0.0), says([branch(each(1))], (0,)))]
+    np.testing.assert_array_equal(told[0].measured, told[1].measured)

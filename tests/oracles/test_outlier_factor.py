@@ -67,7 +67,7 @@ def test_a_history_is_drawn_by_its_seed_and_knows_what_it_needs() -> None:
     seen = rng.standard_normal((3000, 1))
     seen[::3] = np.nan
     one, same, other = (fit_history(seen, seed, history=500) for seed in (3, 3, 4))
-    assert one.points.shape == (500, 1)
+    assert one.points.shape == (1, 500)
     assert np.isin(one.points, seen).all()
     np.testing.assert_array_equal(one.points, same.points)
     assert not np.array_equal(one.points, other.points)
@@ -84,7 +84,7 @@ def test_each_innovation_is_rated_alone(raw: bool) -> None:
     log = Log(11)
     told = scores(OutlierFactor(history(1), raw=raw), log)
     asked = log.value / (1 if raw else SIGMA)
-    expected = peer(np.asarray(history(1).points), 20, asked.reshape(-1, 1)).reshape(-1, 2)
+    expected = peer(np.asarray(history(1).points).T, 20, asked.reshape(-1, 1)).reshape(-1, 2)
     np.testing.assert_allclose(told, np.where(log.valid, expected, np.nan), rtol=1e-6)
 
 
@@ -122,5 +122,5 @@ def test_the_windowed_factor_is_that_of_the_means() -> None:
     log = Log(13, gap_s=20.0)
     told = scores(WindowedOutlierFactor(history(3), means(SPREAD)), log)
     asked = mean_loop(log, SPREAD)[log.valid]
-    np.testing.assert_allclose(told[log.valid], peer(np.asarray(history(3).points), 20, asked), rtol=1e-6)
+    np.testing.assert_allclose(told[log.valid], peer(np.asarray(history(3).points).T, 20, asked), rtol=1e-6)
     assert np.isnan(told[~log.valid]).all()

@@ -17,9 +17,11 @@ from sensorfault.methods import (
     elm_cross_validated,
     elm_robust,
     height_agreement,
+    innovation_tests,
     kinematic_observer,
     linear_conditioning,
     linear_extrapolation,
+    lof_efd,
     logistic_cubature,
     lstm_displacement,
     lstm_predictor,
@@ -34,6 +36,7 @@ from sensorfault.methods import (
     relative_conditioning,
     side_force,
     slope,
+    train,
 )
 from sensorfault.methods.recipe import Recipe
 
@@ -70,6 +73,9 @@ _RECIPES = (
     *anfis_cubature.RECIPES,
     logistic_cubature.RECIPE,
     cooperative.RECIPE,
+    *innovation_tests.RECIPES,
+    lof_efd.RECIPE,
+    train.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

@@ -86,8 +86,9 @@ class Monitor(eqx.Module):
 
     `owner[c]` is the sensor of channel c. `most` bounds how many sensors one sample may exclude, largest first; what is
     still accused then is *unknown*. With most = 0 all accused are named at once. `together`: a fault on one channel
-    takes out its whole sensor (a fix), not only the channels accused (an axis of a gyro). `hold_s[c]`: for how long a
-    value and a verdict stand without a new measurement [s]; 0 for a channel that comes with every sample.
+    takes out its whole sensor (a fix), not only the channels accused (an axis of a gyro). `least`: nor is anybody
+    excluded once no more than so many channels remain (satellites that just tell a position). `hold_s[c]`: for how
+    long a value and a verdict stand without a new measurement [s]; 0 for a channel that comes with every sample.
     """
 
     residual: Stage[Any, Sample, Residual, Any]
@@ -98,6 +99,7 @@ class Monitor(eqx.Module):
     owner: tuple[int, ...] = eqx.field(static=True)
     most: int = eqx.field(static=True, default=0)
     together: bool = eqx.field(static=True, default=True)
+    least: int = eqx.field(static=True, default=0)
 
     def init(self) -> MonitorState:
         """State before the first sample."""
@@ -205,7 +207,8 @@ class Monitor(eqx.Module):
 
         def more(carry: _Round) -> Bool[Array, ""]:
             told, _, _, out, rounds = carry
-            return accused(told, out).any() & (rounds < self.most)
+            enough = (residual.valid & ~out).sum() > self.least
+            return accused(told, out).any() & (rounds < self.most) & enough
 
         def strike(carry: _Round) -> _Round:
             told, _, struck, out, rounds = carry

@@ -16,6 +16,7 @@ from sensorfault.monitor.residual.difference import Difference
 from sensorfault.monitor.residual.displacement import Displacement
 from sensorfault.monitor.residual.extrapolation import Extrapolation
 from sensorfault.monitor.residual.height_kalman import HeightKalman
+from sensorfault.monitor.residual.ins_gnss import InsGnss
 from sensorfault.monitor.residual.measurement_noise import SageHusa, Stated, WindowedNoise
 from sensorfault.monitor.residual.motion_deficit import MotionDeficit
 from sensorfault.monitor.residual.multistep_observer import MultistepObserver
@@ -41,6 +42,7 @@ from sensorfault.monitor.statistic.freed import Freed
 from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
 from sensorfault.monitor.statistic.horizons import Horizons
 from sensorfault.monitor.statistic.lasting import Lasting
+from sensorfault.monitor.statistic.late import Late
 from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
 from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
 from sensorfault.monitor.statistic.mean_pair import MeanPair
@@ -77,6 +79,7 @@ from sensorfault.vehicles.arm import TwoLink
 from sensorfault.vehicles.height import Climb, StepNetwork
 from sensorfault.vehicles.inertial import Inertial, SideOn
 from sensorfault.vehicles.rover import Rover
+from sensorfault.vehicles.train import CarrierNoise, ElevationNoise, Grade
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, Leader
 
 PARTS: dict[str, type[eqx.Module]] = {
@@ -94,8 +97,9 @@ PARTS: dict[str, type[eqx.Module]] = {
         *(MultistepObserver, Climb, StepNetwork, HeightKalman, Horizons, Adaptive),
         *(Difference, Windowed, Slope, MeanPair, RampGlr),
         *(TwoHeights, Agreement),
-        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised, DoubleThreshold),
+        *(Cubature, Stated, SageHusa, WindowedNoise, Normalised, Late, DoubleThreshold),
         *(Follower, FollowerRoles, Leader, Rover),
+        *(InsGnss, Grade, ElevationNoise, CarrierNoise),
         *(FuzzyInference, Anfis, Premises, LogisticRegression, Logistic, UnitRange),
         *(AveragedInnovation, AveragedTogether, AveragedFreed, WindowedChiSquare, Cusum, Ewma),
         *(Freed, Standardised, ChiSquare),

@@ -47,9 +47,8 @@ def inert(detectable: Float[np.ndarray, "*s C"], matters: float) -> Bool[np.ndar
 
 
 class Protection(NamedTuple):
-    """Horizontal protection level [m]: `level`, the larger of its two parts, and which channel the second is of."""
+    """Horizontal protection level [m]: without a fault, and with one unnoticed on the `worst` channel, never less."""
 
-    level: float
     fault_free: float
     faulty: float
     worst: int
@@ -63,9 +62,9 @@ def protection(
 ) -> Protection:
     """How far off the horizontal position may be after the update, with at most this risk for each hypothesis.
 
-    Without a fault: Φ⁻¹(1 - risk/2) times the half axis of the error ellipse, as HPL_0 of RTCA DO-229, appendix J. With
-    one on channel i, unnoticed: the shift that its minimum detectable bias makes, |K_i| ∇_i, the slope times the bias
-    (DO-229; Diesel & Luu 1995 for filters), and beyond it the noise as Φ⁻¹(1 - risk) has it.
+    Without a fault: √(-2 ln risk), Rayleigh's quantile, times the longer half axis of the error ellipse (RTCA DO-229,
+    appendix J: 6.18 at 5e-9). With one on channel i, unnoticed: the shift that its minimum detectable bias makes,
+    |K_i| ∇_i, the slope times the bias (DO-229; Diesel & Luu 1995 for filters), and beyond it as much noise.
 
     `gain`: rows east and north of the Kalman gain K of this epoch [m/m]. So the bias of this epoch alone counts: one
     that lasts goes on to push what is already there, and its level is that of the gain from the bias to the error after
@@ -73,16 +72,14 @@ def protection(
     hypothesis; share it out over as many as there are. `detectable`: ∇ [m], of one with β = risk; channels with inf do
     not count: a filter that does not take them in cannot be misled by them.
     """
-    from scipy.special import ndtri
-
     # d² = (σ_e² + σ_n²)/2 + √(((σ_e² - σ_n²)/2)² + σ_en²)
-    sigma = float(np.sqrt(np.linalg.eigvalsh(horizontal)[-1]))
-    free = -float(ndtri(risk / 2)) * sigma
-    slope = np.hypot(*gain)
-    shift = np.where(np.isfinite(detectable), slope * np.where(np.isfinite(detectable), detectable, 0.0), 0.0)
+    d = float(np.sqrt(np.linalg.eigvalsh(horizontal)[-1]))
+    # HPL_0 = √(-2 ln risk) d
+    free = float(np.sqrt(-2 * np.log(risk))) * d
+    # HPL_1 = max |K_i| ∇_i + HPL_0
+    shift = np.hypot(*gain) * np.where(np.isfinite(detectable), detectable, 0.0)
     worst = int(shift.argmax())
-    faulty = float(shift[worst]) - float(ndtri(risk)) * sigma
-    return Protection(max(free, faulty), free, faulty, worst)
+    return Protection(free, float(shift[worst]) + free, worst)
 
 
 def _alone(cov: Float[np.ndarray, "*s C C"], known: Bool[np.ndarray, "*s C"]) -> Float[np.ndarray, "*s C C"]:

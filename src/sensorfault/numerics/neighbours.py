@@ -7,20 +7,27 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 
-def nearest(points: Float[Array, "N F"], asked: Float[Array, "C F"], k: int) -> tuple[Int[Array, "C k"], Array]:
+def nearest(points: Float[Array, "F N"], asked: Float[Array, "C F"], k: int) -> tuple[Int[Array, "C k"], Array]:
     """Which k of the points are nearest to each asked for, and their Euclidean distances (C, k), in no stated order.
 
     With one feature the points are in ascending order, and the neighbours of one are found by a binary search. With
     more every distance is looked at; squares that agree to seven digits of what they exceed the smallest by, count as
     equally far.
     """
-    if points.shape[1] == 1:
-        return _in_a_row(points[:, 0], asked[:, 0], k)
-    square = ((asked[:, None] - points[None]) ** 2).sum(axis=2)
-    beyond = square - square.min(axis=1, keepdims=True)
+    if len(points) == 1:
+        return _in_a_row(points[0], asked[:, 0], k)
+    # one by one stays in the processor's cache
+    found: tuple[Int[Array, "C k"], Array] = lax.map(lambda one: _among(points, one, k), asked)
+    return found
+
+
+def _among(points: Float[Array, "F N"], one: Float[Array, " F"], k: int) -> tuple[Int[Array, " k"], Array]:
+    square = jnp.zeros(points.shape[1])
+    for f in range(len(points)):
+        square = square + (one[f] - points[f]) ** 2
     # in single precision XLA picks out a few without sorting all: a sixteenth of the time
-    index = lax.top_k(-beyond.astype(jnp.float32), k)[1]
-    return index, jnp.sqrt(jnp.take_along_axis(square, index, axis=1))
+    index = lax.top_k(-(square - square.min()).astype(jnp.float32), k)[1]
+    return index, jnp.sqrt(square[index])
 
 
 def _in_a_row(points: Float[Array, " N"], asked: Float[Array, " C"], k: int) -> tuple[Int[Array, "C k"], Array]:

@@ -20,14 +20,14 @@ def density(reach: Float[Any, "*s k"]) -> Float[Any, "*s"]:
 
 
 class LocalDensity(eqx.Module):
-    """How dense a history lies at each of its N points of F features, in ascending order where F is 1.
+    """How dense a history lies at each of its N points, in ascending order where they have one feature.
 
-    `reach`: from each point to its k-th neighbour (the k-distance), `density`: its local reachability density.
+    The points stand feature by feature, so that distances are computed several at a time. `near`: of each point how far
+    it is to its k-th neighbour (the k-distance), and its local reachability density.
     """
 
-    points: Float[Array, "N F"]
-    reach: Float[Array, " N"]
-    density: Float[Array, " N"]
+    points: Float[Array, "F N"]
+    near: Float[Array, "N 2"]
     k: int = eqx.field(static=True)
 
     def outlier_factor(self, asked: Float[Array, "C F"]) -> Float[Array, " C"]:
@@ -37,7 +37,8 @@ class LocalDensity(eqx.Module):
         `-LocalOutlierFactor(k, novelty=True).score_samples`: of points equally far exactly k are neighbours.
         """
         index, distance = nearest(self.points, asked, self.k)
+        near = self.near[index]
         # (11) reach(p, q) = max(kdist(q), d(p, q))
-        own: Float[Array, " C"] = density(jnp.maximum(self.reach[index], distance))
+        own: Float[Array, " C"] = density(jnp.maximum(near[..., 0], distance))
         # (13) LOF = mean lrd of the neighbours / lrd
-        return self.density[index].mean(axis=-1) / own
+        return near[..., 1].mean(axis=-1) / own

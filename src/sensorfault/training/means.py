@@ -50,3 +50,17 @@ def fit_spread(means: Means, tape: Float[np.ndarray, "M W"]) -> Means:
     """
     spread = np.nanquantile(np.abs(tape), SHARE, axis=0) / NORMAL
     return replace(means, spread=means.spread * jnp.asarray(spread))
+
+
+def means_of(innovations: Float[np.ndarray, "T C"], lengths: tuple[int, ...]) -> Float[np.ndarray, "M W"]:
+    """Means of each channel's normalised innovations over the last so many samples, all channels one below the other.
+
+    NaN where one of them is missing.
+    """
+    sums = np.cumsum(np.pad(np.nan_to_num(innovations), ((1, 0), (0, 0))), axis=0)
+    there = np.cumsum(np.pad(np.isfinite(innovations), ((1, 0), (0, 0))), axis=0)
+    means = np.full((*innovations.shape, len(lengths)), np.nan)
+    for k, n in enumerate(lengths):
+        whole = there[n:] - there[:-n] == n
+        means[n - 1 :, :, k] = np.where(whole, (sums[n:] - sums[:-n]) / n, np.nan)
+    return means.reshape(-1, len(lengths))

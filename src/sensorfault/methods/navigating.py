@@ -1,0 +1,149 @@
+"""What the methods share that judge satellites by an inertial navigation: framing, filter, monitor, model."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from sensorfault.logs.epochs import Framing, framing
+from sensorfault.logs.satellites import satellites
+from sensorfault.logs.table import Log, LogError
+from sensorfault.model import Model, owners
+from sensorfault.monitor.decision.exceed import Exceed
+from sensorfault.monitor.monitor import Branch, Monitor
+from sensorfault.monitor.recovery.drop import Drop
+from sensorfault.monitor.residual.ins_gnss import LEAST, InsGnss
+from sensorfault.monitor.statistic.normalised import Normalised
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.replay import replay_log
+from sensorfault.stage import Stage
+from sensorfault.vehicles.train import ElevationNoise, Grade
+
+SYSTEMS = {"G": 32, "R": 27, "E": 36, "C": 63, "J": 10}  # how many satellites each numbers
+ONE_FREQUENCY = "GEJ"  # systems whose Doppler is of L1
+WHEEL = "wheel.speed"
+MOST = 3  # satellites left out at one epoch
+FEW = 60  # epochs to fit on
+# A small unit in a vehicle that shakes: as densities fifteen times those of its data sheet, with which the innovations
+# of a real drive have the spread that the filter claims; the clock is a TCXO's.
+GRADE = Grade(*(jnp.asarray(x) for x in (1e-3, 0.1, 1e-5, 1e-4, 0.1, 0.19, 5e-3, 0.3, 1.0)))
+SIGMA = 1.4, 4.0, float(np.deg2rad(15.0))  # of a pseudorange: overhead, more on the horizon [m], over this [rad]
+RATE_M_S, WHEEL_M_S, ASIDE_M_S = 0.1, 0.1, 0.2
+NORMAL = 0.6745  # a normal number is as often within this as not
+
+
+@dataclass(frozen=True)
+class Filter:
+    """What the filter takes for granted. `factor`: of the pseudoranges' standard deviation. `bank`: see InsGnss."""
+
+    factor: float = 1.0
+    bank: bool = False
+    grade: Grade = GRADE
+
+
+def framed(name: str, log: Log) -> Framing:
+    """How the log becomes epochs: a slot for each satellite that its systems number, Dopplers where all are of L1.
+
+    Raises:
+        LogError: no satellite has a corrected pseudorange and a place, or there are too few epochs.
+    """
+    seen = satellites(log, "".join(SYSTEMS))
+    letters = [letter for letter in SYSTEMS if any(one[0] == letter for one in seen.names)]
+    most = {letter: max(int(one[1:]) for one in seen.names if one[0] == letter) for letter in letters}
+    names = tuple(f"{x}{i:02d}" for x in letters for i in range(1, max(SYSTEMS[x], most[x]) + 1))
+    rates = set(letters) <= set(ONE_FREQUENCY) and bool(np.isfinite(seen.doppler).any())
+    wheel = WHEEL if any(channel.path == WHEEL for channel in log.channels) else ""
+    how = framing(log, names, rates, wheel)
+    epochs = int((np.isfinite(seen.corrected).sum(axis=1) >= LEAST).sum())
+    if epochs < FEW:
+        raise LogError(
+            f"{log.name} has {epochs} epochs with {LEAST} satellites, {name} needs {FEW}; give a longer log."
+        )
+    return how
+
+
+def navigation(how: Framing, filter: Filter) -> InsGnss:
+    """The filter of these satellites."""
+    return _navigation(how, filter, jnp.asarray(filter.factor))
+
+
+def _navigation(how: Framing, filter: Filter, factor: Float[Array, ""]) -> InsGnss:
+    letters = list(dict.fromkeys(one[0] for one in how.satellites))
+    zenith, horizon, scale = (jnp.asarray(x) for x in SIGMA)
+    return InsGnss(
+        grade=filter.grade,
+        noise=ElevationNoise(zenith, horizon, scale, factor),
+        rate_sigma=jnp.asarray(RATE_M_S),
+        wheel=jnp.asarray(WHEEL_M_S),
+        aside=jnp.asarray(ASIDE_M_S),
+        system=tuple(letters.index(one[0]) for one in how.satellites),
+        rates=how.rates,
+        bank=filter.bank,
+    )
+
+
+def monitor(
+    how: Framing, residual: InsGnss, *branches: Branch, recovery: Stage[Any, Any, Any, Any] | None = None
+) -> Monitor:
+    """The worst are left out, one after the other, as long as more remain than tell a position; without branches
+    with the limits off.
+    """
+    channels = len(how.channels)
+    return Monitor(
+        residual=residual,
+        branches=branches or (Branch(Normalised(), Fixed(jnp.inf * jnp.ones(channels))),),
+        decision=Exceed(),
+        recovery=recovery or Drop(),
+        hold_s=jnp.zeros(channels),
+        owner=owners(how.channels, how.sensors),
+        most=MOST,
+        least=LEAST * len(how.names),
+    )
+
+
+def normalised(how: Framing, epochs: Log, filter: Filter) -> Float[np.ndarray, "T C"]:
+    """Innovations of a healthy log in their standard deviations, NaN where there was none."""
+    own = monitor(how, navigation(how, filter))
+    tape = replay_log(own, epochs)
+    score: Float[np.ndarray, "T C"] = np.asarray(tape.scores[0])
+    return np.where(np.asarray(tape.valid), score * np.sign(np.asarray(tape.residual)), np.nan)
+
+
+def fitted(how: Framing, epochs: Log, filter: Filter) -> Filter:
+    """With the factor by which half of the healthy innovations are within what is half of a normal law."""
+    factor = filter.factor
+    for _ in range(2):
+        seen = normalised(how, epochs, Filter(factor, False, filter.grade))[:, : len(how.satellites)]
+        factor *= float(np.nanmedian(np.abs(seen))) / NORMAL
+    return Filter(factor, filter.bank, filter.grade)
+
+
+def model(
+    name: str, log: Log, how: Framing, epochs: Log, own: Monitor, tests: tuple[str, ...], told: dict[str, Any]
+) -> Model:
+    """`tests` names what each branch tests of each channel, behind a `*` if of all at once."""
+    deaf = monitor(how, own.residual)  # type: ignore[arg-type]
+    tape = replay_log(deaf, epochs)
+    size = np.where(np.asarray(tape.valid), np.abs(np.asarray(tape.residual)), np.nan)
+    heard = np.isfinite(size).any(axis=0)
+    sigma = np.ones(len(how.channels))
+    sigma[heard] = np.nanmedian(size[:, heard], axis=0) / NORMAL
+    everyone = float(np.median(sigma[heard])) if heard.any() else 1.0
+    paths = [channel.path for channel in how.channels]
+    named: list[tuple[str, str | None]] = []
+    for test in tests:
+        named += [(test[1:], None)] if test.startswith("*") else [(test, path) for path in paths]
+    return Model(
+        method=name,
+        monitor=own,
+        channels=how.channels,
+        sensors=how.sensors,
+        tests=tuple(named),
+        watched=(True,) * len(paths),
+        tick_s=how.period_s,
+        sigma=tuple(np.where(heard, sigma, everyone).tolist()),
+        summary={"training_log": log.name, "training_s": log.duration_s, "epochs": len(epochs), **told},
+        framing=how,
+    )

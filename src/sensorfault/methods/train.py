@@ -1,0 +1,67 @@
+"""Faults of single satellites by filters that each leave one out: what is recommended for a train, or a car."""
+
+from functools import partial
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.logs.epochs import Framing
+from sensorfault.logs.table import Log
+from sensorfault.methods.navigating import Filter, fitted, framed, model, monitor, navigation, normalised
+from sensorfault.methods.recipe import Recipe
+from sensorfault.model import Model
+from sensorfault.monitor.monitor import Branch
+from sensorfault.monitor.statistic.cumulative_bank import CumulativeBank
+from sensorfault.monitor.statistic.means import Means
+from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.replay import replay_log
+from sensorfault.training.limits import tail_limit
+from sensorfault.training.means import fit_spread, means_of, windows
+from sensorfault.training.session import Session
+
+NAME = "train"
+WINDOWS = 1.0, 5.0, 20.0  # epochs
+GAP = 5.0  # epochs without a satellite after which its windows begin anew
+PER_HOUR = 1.0  # false alarms promised
+BLOCK_S = 30.0  # alarms within are one
+
+
+def means(how: Framing, innovations: Float[np.ndarray, "T C"]) -> Means:
+    """Windows of innovations with the spreads of these healthy ones."""
+    period = how.period_s
+    new = windows(tuple(period * w for w in WINDOWS), period, GAP * period, len(how.channels))
+    return fit_spread(new, means_of(innovations, tuple(round(w) for w in WINDOWS)))
+
+
+def branch(how: Framing, own: Means, limit: float) -> Branch:
+    """The largest of the windows' means of each satellite, against a filter without it."""
+    return Branch(CumulativeBank(own), Fixed(limit * jnp.ones(len(how.channels))))
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    session.tell("fitting the noise of pseudoranges")
+    how = framed(NAME, log)
+    epochs = how.frame(log)
+    own = fitted(how, epochs, Filter(bank=True))
+    session.tell("how far each satellite may be from a filter without it")
+    seen = means(how, normalised(how, epochs, own))
+    residual = navigation(how, own)
+    deaf = monitor(how, residual, branch(how, seen, np.inf))
+    score = np.asarray(replay_log(deaf, epochs).scores[0])
+    tested = np.isfinite(score).any(axis=1)
+    largest = np.where(tested, np.nanmax(np.where(np.isfinite(score), score, -np.inf), axis=1), np.nan)
+    limit = float(tail_limit(largest[:, None], how.period_s, PER_HOUR, BLOCK_S)[0])
+    heard = monitor(how, residual, branch(how, seen, limit))
+    told = {"limit": limit, "noise_factor": own.factor}
+    return model(NAME, log, how, epochs, heard, ("cumulative innovation",), told)
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="GNSS/INS filters that each leave a satellite out, means of their innovations over 1, 5 and 20 epochs",
+    source="after Wang et al. 2023, whose filter it is; leave one out: Brown & McBurney 1988 (solution separation)",
+    promise=f"{PER_HOUR:g} false alarm an hour, extrapolated from the tail of the healthy log",
+    build=_build,
+    needs=partial(framed, NAME),
+)
