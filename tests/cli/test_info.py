@@ -110,3 +110,12 @@ def test_info_of_a_recording(run: Run, tmp_path: Path) -> None:
     said = run("info", "drive.mcap")
     assert said.code == 0, said.err
     assert "topics of unknown type left out: /image" in said.err
+
+
+def test_a_reason_is_said_once_for_all_methods_that_it_holds_against(run: Run, tmp_path: Path) -> None:
+    mcap(tmp_path / "drive.mcap")
+    told = run("info", "drive.mcap", "--json", "info.json")
+    reasons = list(json.loads((tmp_path / "info.json").read_text())["does_not_apply"].values())
+    assert len(set(reasons)) < len(reasons)
+    for reason in set(reasons):
+        assert told.out.count(f"no: {reason[:60]}") == len({one for one in reasons if one[:60] == reason[:60]})

@@ -3,9 +3,10 @@ from collections.abc import Iterator
 import jax
 import pytest
 
+from haste import optimised
 from laws.case import Case
 from laws.cases import built
-from laws.strict import optimised, strict
+from laws.strict import strict
 
 __all__ = ["strict"]
 

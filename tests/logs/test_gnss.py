@@ -16,6 +16,7 @@ from sensorfault.logs.readers.formats import read_source
 from sensorfault.logs.readers.gnss.broadcast import Broadcast
 from sensorfault.logs.readers.gnss.observed import Observed
 from sensorfault.logs.readers.gnss.ranges import with_satellites
+from sensorfault.logs.readers.gnss.rinex import calendar_s
 from sensorfault.logs.readers.gnss.rinex_nav import read_nav
 from sensorfault.logs.readers.gnss.subframes import Subframes
 from sensorfault.logs.readers.gzipped import read_unpacked
@@ -196,3 +197,8 @@ def test_a_packed_file_is_read_up_to_its_damage(tmp_path: Path) -> None:
     path.write_bytes(b"no gzip at all")
     with pytest.raises(LogError, match="nothing in this file can be unpacked"):
         read(path)
+
+
+def test_a_year_as_damage_makes_it_is_no_date() -> None:
+    with pytest.raises(ValueError, match="no year"):
+        calendar_s(["99999999999999999999", "1", "1", "0", "0", "0"])

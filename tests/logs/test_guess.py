@@ -8,6 +8,7 @@ import pytest
 
 from sensorfault.logs import LogError, VehicleFile, guess, read
 from sensorfault.logs.guess.words import read_name
+from sensorfault.vehicles.underwater import roles
 
 ROWS = 4000
 TIME = np.arange(ROWS) * 0.02
@@ -293,3 +294,15 @@ def test_unknown_names_are_kept_and_what_wanders_is_not_watched(tmp_path: Path) 
 def test_names(column: str, kind: str, axis: str, unit: str) -> None:
     meaning = read_name(column)
     assert (meaning.kind, meaning.axis, meaning.unit) == (kind, axis, unit)
+
+
+def test_a_leader_is_one_sensor_even_if_it_lies_still(tmp_path: Path) -> None:
+    path, random = tmp_path / "dive.csv", np.random.default_rng(0)
+    rows = ["time_s,leader1_range,leader1_latitude,leader1_longitude,leader2_range,leader2_latitude,leader2_longitude"]
+    for k in range(200):
+        r = random.normal(100, 1, 2)
+        rows.append(f"{k},{r[0]:.2f},48.1,11.5,{r[1]:.2f},{48.2 + 1e-5 * k:.6f},{11.6 - 1e-5 * k:.6f}")
+    path.write_text("\n".join(rows))
+    found = {sensor.name: [channel.name for channel in sensor.channels] for sensor in guess(path).sensors}
+    assert found == {"leader1": ["range", "latitude", "longitude"], "leader2": ["range", "latitude", "longitude"]}
+    assert len(roles(read(path)).leaders) == 2

@@ -87,6 +87,13 @@ def test_two_clocks(stamp_s: Callable[[int], float], said: str | None) -> None:
     assert [said in note for note in table.notes] == ([] if said is None else [True])
 
 
+def test_a_topic_of_which_no_message_can_be_decoded_is_no_table() -> None:
+    topics = Topics(Path("drive.bag"), Ask())
+    with pytest.raises(ValueError, match="invalid literal"):
+        topics.take("/a", "Odd", START_NS, {"header": {"stamp": {"sec": "x", "nanosec": 0}}, "x": 1})
+    assert topics.tables()[0] == {}
+
+
 def test_json_in_an_mcap_beside_what_nobody_decodes(tmp_path: Path) -> None:
     log = read(mcap(tmp_path / "drive.mcap"))
     np.testing.assert_allclose(log.value[:, log.index("local_position.x")], np.arange(200) / 50)

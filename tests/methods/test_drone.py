@@ -3,6 +3,7 @@
 from functools import cache
 
 import numpy as np
+import pytest
 
 from sensorfault.detection import Detection
 from sensorfault.detector import detect
@@ -13,6 +14,8 @@ from sensorfault.methods.catalog import METHODS
 from sensorfault.model import Model
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.training.session import SILENT
+
+pytestmark = pytest.mark.usefixtures("hasty")
 
 FITTED_S, ONSET_S = 420.0, 520.0
 RECEIVER = tuple(f"gnss.{name}" for name in ("latitude", "longitude", "altitude", "north", "east", "down"))

@@ -29,6 +29,8 @@ from sensorfault.training.session import SILENT
 from sensorfault.types import FAULT, OK, UNKNOWN
 from sensorfault.vehicles.fixed_wing import roles
 
+pytestmark = pytest.mark.usefixtures("hasty")
+
 GNSS, DOWN, BARO, INS = "gnss.altitude", "gnss.down", "barometer.altitude", "ins.up"
 FITTED_S, ONSET_S, LASTS_S = 300.0, 380.0, 60.0
 

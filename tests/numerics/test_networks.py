@@ -11,6 +11,8 @@ from sensorfault.numerics.networks.dense import Dense, Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm
 from sensorfault.training.initial import new_lstm, new_mlp
 
+pytestmark = pytest.mark.usefixtures("hasty")
+
 __all__ = ["strict"]
 
 

@@ -20,6 +20,8 @@ from sensorfault.studies.multistep.flown import Flown, Ramps, count
 from sensorfault.studies.multistep.study import rows_of
 from sensorfault.training.multistep import Trained
 
+pytestmark = pytest.mark.usefixtures("hasty")
+
 
 @cache
 def cut() -> Flown:

@@ -13,6 +13,8 @@ from sensorfault.studies.xu2023.contenders import early, eased
 from sensorfault.studies.xu2023.run import lockout_s, scores, table, through
 from sensorfault.studies.xu2023.scenario import PRINTED, TRAINED_S, scenario
 
+pytestmark = pytest.mark.usefixtures("hasty")
+
 
 @pytest.fixture(scope="module")
 def case():

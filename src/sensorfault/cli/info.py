@@ -35,7 +35,7 @@ def command(log: Path, vehicle: Path | None, json_path: str | None) -> None:
     answer = json_path != "-"
     show.table(f"Sensors of {table.name}", _COLUMNS, [_row(one) for one in sensors], answer, right=("gaps", "at"))
     rows = [(name, "yes" + (f", without {', '.join(without[name])}" if without[name] else "")) for name in applies]
-    rows += [(name, f"no: {reason}") for name, reason in lacking.items()]
+    rows += [(", ".join(names), f"no: {reason}") for reason, names in _by_reason(lacking).items()]
     show.table("Methods", ("method", "applies"), rows, answer)
     told = {
         "log": table.name,
@@ -59,6 +59,14 @@ def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[st
     lacking = {name: reason for name, recipe in METHODS.items() if (reason := recipe.lacks(table))}
     applies = [name for name in METHODS if name not in lacking]
     return applies, lacking, {name: METHODS[name].lacking_parts(table) for name in applies}
+
+
+def _by_reason(lacking: dict[str, str]) -> dict[str, list[str]]:
+    """Each reason once, with all methods that it holds against."""
+    methods: dict[str, list[str]] = {}
+    for name, reason in lacking.items():
+        methods.setdefault(reason, []).append(name)
+    return methods
 
 
 def _row(sensor: "SensorSummary") -> tuple[str, ...]:

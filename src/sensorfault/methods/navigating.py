@@ -104,6 +104,12 @@ def monitor(
     )
 
 
+def innovations(how: Framing, epochs: Log, filter: Filter) -> Float[np.ndarray, "T C"]:
+    """Innovations of a healthy log [SI], NaN where there was none."""
+    tape = replay_log(monitor(how, navigation(how, filter)), epochs)
+    return np.where(np.asarray(tape.valid), np.asarray(tape.residual), np.nan)
+
+
 def normalised(how: Framing, epochs: Log, filter: Filter) -> Float[np.ndarray, "T C"]:
     """Innovations of a healthy log in their standard deviations, NaN where there was none."""
     own = monitor(how, navigation(how, filter))

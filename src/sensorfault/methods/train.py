@@ -1,6 +1,8 @@
 """Faults of single satellites by filters that each leave one out: what is recommended for a train, or a car."""
 
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -8,13 +10,23 @@ from jaxtyping import Float
 
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.navigating import Filter, fitted, framed, model, monitor, navigation, normalised
+from sensorfault.methods.navigating import (
+    Filter,
+    fitted,
+    framed,
+    innovations,
+    model,
+    monitor,
+    navigation,
+    normalised,
+)
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
 from sensorfault.monitor.statistic.cumulative_bank import CumulativeBank
 from sensorfault.monitor.statistic.means import Means
 from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.numerics.integrity import inert
 from sensorfault.replay import replay_log
 from sensorfault.training.limits import tail_limit
 from sensorfault.training.means import fit_spread, means_of, windows
@@ -25,6 +37,8 @@ WINDOWS = 1.0, 5.0, 20.0  # epochs
 GAP = 5.0  # epochs without a satellite after which its windows begin anew
 PER_HOUR = 1.0  # false alarms promised
 BLOCK_S = 30.0  # alarms within are one
+NINE_OF_TEN = 1.28  # quantile of a normal number
+ALERT_M = 50.0  # error of a pseudorange beyond which a gate that sleeps is no gate
 
 
 def means(how: Framing, innovations: Float[np.ndarray, "T C"]) -> Means:
@@ -53,8 +67,22 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     largest = np.where(tested, np.nanmax(np.where(np.isfinite(score), score, -np.inf), axis=1), np.nan)
     limit = float(tail_limit(largest[:, None], how.period_s, PER_HOUR, BLOCK_S)[0])
     heard = monitor(how, residual, branch(how, seen, limit))
-    told = {"limit": limit, "noise_factor": own.factor}
+    told = {"limit": limit, "noise_factor": own.factor, **_smallest(how, epochs, own, seen, limit)}
     return model(NAME, log, how, epochs, heard, ("cumulative innovation",), told)
+
+
+def _smallest(how: Framing, epochs: Log, own: Filter, seen: Means, limit: float) -> dict[str, Any]:
+    """The step of a pseudorange that nine of ten times is found with its first epoch, and within the longest window,
+    at a satellite of middling noise [m]; and a warning where that is more than could matter.
+    """
+    alone = replace(own, bank=False)
+    innovation, score = (f(how, epochs, alone)[:, : len(how.satellites)] for f in (innovations, normalised))
+    sigma = float(np.nanmedian(innovation / score))
+    at_once, later = ((limit + NINE_OF_TEN) * float(spread) * sigma for spread in (seen.spread[0], seen.spread[-1]))
+    told: dict[str, Any] = {"smallest_step_m": {"at once": at_once, f"in {how.period_s * WINDOWS[-1]:g} s": later}}
+    if bool(inert(np.asarray(at_once), ALERT_M)):
+        told["inert"] = f"A step below {at_once:.0f} m passes unseen at first: the filter doubts itself too much."
+    return told
 
 
 RECIPE = Recipe(

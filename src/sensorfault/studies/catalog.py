@@ -7,6 +7,7 @@ from sensorfault.studies.findings import Effort, Findings
 from sensorfault.studies.min2021.study import study as min2021
 from sensorfault.studies.multistep.study import study as multistep
 from sensorfault.studies.niu1998.study import study as niu1998
+from sensorfault.studies.wang2023.study import study as wang2023
 from sensorfault.studies.xu2023.study import study as xu2023
 
 
@@ -53,6 +54,13 @@ STUDIES: dict[str, Study] = {
                 "D-slow": "Slow drift against a barometer, over a minute or more",
                 "D-who": "Who is accused when a height drifts",
             },
+        ),
+        Study(
+            "wang2023",
+            "Satellites of a train that lie, one at a time or half of them",
+            "Wang et al. 2023",
+            wang2023,
+            {"C": "A filter of satellites and inertial unit, and who is left out of it"},
         ),
         Study(
             "xu2023",

@@ -1,7 +1,7 @@
 """Which columns measure something, and what."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +20,7 @@ _STEADY = 0.15  # relative spread below which three axes have a steady length
 
 OTHER_TIME = "another time, or bookkeeping of it"
 QUALITY = "quality or state, no measurement of motion"
+BEACON = frozenset({"range", "position", "depth"})  # what a beacon tells of itself
 NO_SENSOR = "no sensor's reading, as this format is documented"
 
 
@@ -41,6 +42,7 @@ def measurements(
         LogError: a column of numbers has a cell that is none.
     """
     columns, left_out = [], []
+    beacons = beacons_of([read_name(name) for name in source.frame.columns])
     for name in source.frame.columns:
         if name == time:
             continue
@@ -63,7 +65,7 @@ def measurements(
                 left_out.append((name, "holds text"))
                 continue
             column = Column(name, meaning, np.where(np.isinf(value), np.nan, value))
-            reason = _no_measurement(column)
+            reason = _no_measurement(column, meaning.stem in beacons)
             if reason:
                 left_out.append((name, reason))
             else:
@@ -72,11 +74,20 @@ def measurements(
     return _by_value(columns) if headerless else columns, left_out
 
 
-def _no_measurement(column: Column) -> str:
+def beacons_of(meanings: Iterable[Meaning]) -> set[str]:
+    """Stems of those who say how far away they are and where: `leader1_range`, `leader1_latitude`."""
+    kinds: dict[str, set[str]] = {}
+    for meaning in meanings:
+        kinds.setdefault(meaning.stem, set()).add(meaning.kind)
+    return {stem for stem, found in kinds.items() if stem and {"range", "position"} <= found}
+
+
+def _no_measurement(column: Column, of_beacon: bool) -> str:
+    """Why a column is none; where a beacon lies is one, even if it lies there for ever."""
     known = column.value[np.isfinite(column.value)]
     if not len(known):
         return "holds no value at all"
-    if (known == known[0]).all():
+    if (known == known[0]).all() and not (of_beacon and column.meaning.kind in BEACON):
         return "constant"
     if column.meaning.kind == "temperature":
         return "a temperature, no measurement of motion"

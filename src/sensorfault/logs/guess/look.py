@@ -10,7 +10,7 @@ from sensorfault.logs.entries import FileEntry, SensorEntry
 from sensorfault.logs.guess.columns import measurements
 from sensorfault.logs.guess.naming import stem_of
 from sensorfault.logs.guess.sensors import guess_sensors
-from sensorfault.logs.guess.stock import Fields, recognised
+from sensorfault.logs.guess.stock import PX4, Fields, recognised
 from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Source, Tables
@@ -29,6 +29,7 @@ class Guess:
     file: FileEntry
     clock: Clock
     sensors: list[SensorEntry]
+    topic: str = ""  # that its whole file is
 
     @property
     def called(self) -> str:
@@ -38,7 +39,7 @@ class Guess:
     @property
     def stem(self) -> str:
         """What it is called: its table, or its file where that holds one."""
-        return self.file.table or stem_of(self.path)
+        return self.file.table or self.topic or stem_of(self.path)
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,28 @@ def look_at(file: Path, tell: Callable[[float], None]) -> Look:
         said.append(f"{file.name}: commands, no measurements, so left out: {', '.join(commands)}.")
     guesses, errors = _guess_tables({name: one for name, one in tables.items() if name not in commands}, None)
     return Look(guesses, errors, list(dict.fromkeys(said)))
+
+
+def look_at_topics(topics: Mapping[str, Path], others: list[str], tell: Callable[[float], None]) -> Look:
+    """What the files of PX4's topics are, one each; `others`: what else lies there and is no sensor."""
+    tables: dict[str, Source] = {}
+    errors = []
+    for topic, file in topics.items():
+        try:
+            tables[topic] = read_tables(file, Ask(tell=tell))[""]
+        except LogError as error:
+            errors.append(error)
+    fields = PX4.fields(tables)
+    guesses = []
+    for name, meaning in fields.items():
+        try:
+            guesses.append(replace(_guess_table(tables[name], None, meaning), topic=name))
+        except LogError as error:
+            errors.append(error)
+    used = [one.path.name for one in guesses]
+    left = sorted([*others, *(tables[name].path.name for name in tables if tables[name].path.name not in used)])
+    out = f" No sensors, so left out: {', '.join(left)}." if left else ""
+    return Look(guesses, errors, [f"Topics of {PX4.name}, a file each; sensors are in {', '.join(used)}.{out}"])
 
 
 def _guess_tables(tables: Tables, fields: Mapping[str, Fields] | None) -> tuple[list[Guess], list[LogError]]:

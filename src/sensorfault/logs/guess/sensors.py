@@ -8,7 +8,7 @@ import numpy as np
 from sensorfault.logs.clock import Clock
 from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.guess import units
-from sensorfault.logs.guess.columns import Column
+from sensorfault.logs.guess.columns import BEACON, Column, beacons_of
 from sensorfault.logs.guess.devices import Device, find_devices
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.units import to_si
@@ -33,11 +33,15 @@ _WANDERS = 3.0  # halves whose levels differ by more than so many spreads are of
 
 def guess_sensors(source: Source, columns: Sequence[Column], clock: Clock) -> list[SensorEntry]:
     """The sensors of one file."""
-    has_position = any(column.meaning.kind == "position" for column in columns)
-    place = _place_rad(columns)
+    beacons = beacons_of(column.meaning for column in columns)
+    theirs = {column.name for column in columns if column.meaning.stem in beacons and column.meaning.kind in BEACON}
+    own = [column for column in columns if column.name not in theirs]
+    has_position = any(column.meaning.kind == "position" for column in own)
+    place = _place_rad(own)
     parts: dict[str, list[Column]] = {}
     for column in columns:
-        parts.setdefault(_part(column, columns, has_position), []).append(column)
+        name = column.meaning.stem if column.name in theirs else _part(column, own, has_position)
+        parts.setdefault(name, []).append(column)
     return [_sensor(device, clock, place) for device in find_devices(parts, source, clock)]
 
 

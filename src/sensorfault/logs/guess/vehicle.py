@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from sensorfault.logs.guess.columns import NO_SENSOR, OTHER_TIME, QUALITY
-from sensorfault.logs.guess.look import Guess, look_at
+from sensorfault.logs.guess.exported import topics_of
+from sensorfault.logs.guess.look import Guess, look_at, look_at_topics
 from sensorfault.logs.guess.naming import joined, short_names, stem_of
 from sensorfault.logs.place import Where, files_of
 from sensorfault.logs.table import LogError
@@ -29,7 +30,9 @@ def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> Ve
         LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
     """
     files = files_of(path)
-    looked = [look_at(file, tell) for file in files]
+    topics = topics_of(files)
+    others = [file.name for file in files if file not in topics.values()]
+    looked = [look_at_topics(topics, others, tell)] if topics else [look_at(file, tell) for file in files]
     guesses = [one for look in looked for one in look.guesses]
     errors = [error for look in looked for error in look.errors]
     if not guesses:
@@ -39,7 +42,8 @@ def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> Ve
             else LogError(f"{path}: none of its {len(errors)} files or tables is a log; the first: {errors[0]}")
         )
     notes = [*(note for look in looked for note in look.notes), *(f"Left out: {error}" for error in errors)]
-    _refuse_several_drives(guesses)
+    if not topics:
+        _refuse_several_drives(guesses)
     guesses, raw = _calibrated(guesses)
     guesses.sort(key=_octave)
     names = (

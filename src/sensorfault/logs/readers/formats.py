@@ -1,9 +1,7 @@
 """Which reader opens which file. A new format is one more line in FORMATS."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from fnmatch import fnmatchcase
-from functools import lru_cache, partial
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +13,7 @@ from sensorfault.logs.readers.can_bus import read_can
 from sensorfault.logs.readers.csv import read_csv, rest_of_csv
 from sensorfault.logs.readers.dataflash import read_dataflash
 from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
+from sensorfault.logs.readers.format import Format, in_parts, one_table, remembering
 from sensorfault.logs.readers.gnss.leader import observations_beside
 from sensorfault.logs.readers.gnss.librsf import looks_librsf, read_librsf
 from sensorfault.logs.readers.gnss.nmea import looks_nmea, read_nmea
@@ -24,7 +23,7 @@ from sensorfault.logs.readers.gnss.rinex_obs import read_obs
 from sensorfault.logs.readers.gnss.smartloc import looks_smartloc, read_smartloc
 from sensorfault.logs.readers.gnss.sp3 import read_sp3
 from sensorfault.logs.readers.gnss.ubx import read_ubx
-from sensorfault.logs.readers.gzipped import head_of, inner, is_packed, read_unpacked
+from sensorfault.logs.readers.gzipped import head_of, is_packed, read_unpacked
 from sensorfault.logs.readers.mat import read_mat
 from sensorfault.logs.readers.mavlink import read_tlog
 from sensorfault.logs.readers.mcap import read_mcap
@@ -38,89 +37,43 @@ from sensorfault.logs.readers.utias import looks_utias, read_utias
 from sensorfault.logs.table import LogError
 
 _HEAD_BYTES = 4096
-
-
-def _itself(path: Path) -> Path:
-    return path
-
-
-@dataclass(frozen=True)
-class Format:
-    """One kind of log file.
-
-    `names`: what its files are called, `*.csv`, in lower case. `read`: a file -> its tables, as far as it can be read.
-    `looks`: whether a file that begins so (4096 bytes) is one, where several formats call their files alike; the first
-    that says so takes it, else the first that has no `looks`. `leader`: of files that only together are one log, the
-    one that stands for them. `parts`: whether it hands on a long file part by part, if asked to.
-    """
-
-    title: str
-    names: tuple[str, ...]
-    read: Callable[[Path, Ask], Tables]
-    looks: Callable[[bytes], bool] | None = None
-    leader: Callable[[Path], Path] = _itself
-    parts: bool = False
-
-    def may_be(self, path: Path) -> bool:
-        """Whether its files are called so."""
-        return any(fnmatchcase(inner(path).name.lower(), name) for name in self.names)
-
-
-def _one(read: Callable[[Path], Source]) -> Callable[[Path, Ask], Tables]:
-    """The reader of a format with one table a file."""
-    return lambda path, ask: {"": read(path)}
-
-
-def _long(read: Callable[[Path], Source], rest: Callable[[Path, Ask], Source]) -> Callable[[Path, Ask], Tables]:
-    """The same for a format whose long files can be handed on part by part."""
-    return lambda path, ask: {"": read(path) if ask.part is None else rest(path, ask)}
-
-
-def _once(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
-    """The same reader, which remembers the last file: first one looks at what it holds, then one takes it."""
-
-    @lru_cache(maxsize=1)
-    def remembered(path: Path, changed_ns: int, size: int, ask: Ask) -> Tables:
-        return read(path, ask)
-
-    def reader(path: Path, ask: Ask) -> Tables:
-        if ask.part is not None:  # nothing to remember of what is handed on
-            return read(path, ask)
-        stat = path.stat()
-        return remembered(path, stat.st_mtime_ns, stat.st_size, ask)
-
-    return reader
+_ARCHIVES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip", ".7z", ".rar")
 
 
 FORMATS = (
-    Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), _long(read_csv, rest_of_csv), parts=True),
-    Format("libRSF measurements", ("*.txt",), _once(read_librsf), looks_librsf),
-    Format("smartLoc measurements", ("*.csv",), _once(read_smartloc), looks_smartloc),
-    Format("UTIAS measurements", ("*.dat",), _one(read_utias), looks_utias),
-    Format("Parquet", ("*.parquet",), _long(read_parquet, rest_of_parquet), parts=True),
-    Format("RTKLIB solution", ("*.pos",), _one(read_pos)),
-    Format("NumPy arrays", ("*.npy",), _one(read_npy), leader=called_by),
-    Format("MATLAB", ("*.mat",), _once(read_mat)),
-    Format("PX4 ULog", ("*.ulg", "*.ulog"), _once(read_ulog)),
-    Format("ROS 1 bag", ("*.bag",), _once(read_bag1), parts=True),
-    Format("ROS 2 bag", ("*.db3",), _once(read_bag2), leader=first_part, parts=True),
-    Format("MCAP", ("*.mcap",), _once(read_mcap), leader=first_part, parts=True),
-    Format("ArduPilot DataFlash", ("*.bin",), _once(read_dataflash)),
-    Format("ArduPilot DataFlash text", ("*.log",), _once(read_dataflash_text), looks_dataflash_text),
-    Format("MAVLink telemetry", ("*.tlog",), _once(read_tlog)),
-    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), _once(read_mdf), looks_mdf),
-    Format("CAN recording", ("*.blf", "*.asc"), _once(read_can)),
-    Format("u-blox", ("*.ubx",), _once(read_ubx)),
-    Format("NMEA", ("*.nmea", "*.txt", "*.log"), _once(read_nmea), looks_nmea),
-    Format("RINEX observations", ("*.obs", "*.rnx", "*.[0-9][0-9]o"), _once(_one(read_obs)), partial(looks_rinex, "O")),
+    Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), in_parts(read_csv, rest_of_csv), parts=True),
+    Format("libRSF measurements", ("*.txt",), remembering(read_librsf), looks_librsf),
+    Format("smartLoc measurements", ("*.csv",), remembering(read_smartloc), looks_smartloc),
+    Format("UTIAS measurements", ("*.dat",), one_table(read_utias), looks_utias),
+    Format("Parquet", ("*.parquet",), in_parts(read_parquet, rest_of_parquet), parts=True),
+    Format("RTKLIB solution", ("*.pos",), one_table(read_pos)),
+    Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by),
+    Format("MATLAB", ("*.mat",), remembering(read_mat)),
+    Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog)),
+    Format("ROS 1 bag", ("*.bag",), remembering(read_bag1), parts=True),
+    Format("ROS 2 bag", ("*.db3",), remembering(read_bag2), leader=first_part, parts=True),
+    Format("MCAP", ("*.mcap",), remembering(read_mcap), leader=first_part, parts=True),
+    Format("ArduPilot DataFlash", ("*.bin",), remembering(read_dataflash)),
+    Format("ArduPilot DataFlash text", ("*.log",), remembering(read_dataflash_text), looks_dataflash_text),
+    Format("MAVLink telemetry", ("*.tlog",), remembering(read_tlog)),
+    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), remembering(read_mdf), looks_mdf),
+    Format("CAN recording", ("*.blf", "*.asc"), remembering(read_can)),
+    Format("u-blox", ("*.ubx",), remembering(read_ubx)),
+    Format("NMEA", ("*.nmea", "*.txt", "*.log"), remembering(read_nmea), looks_nmea),
+    Format(
+        "RINEX observations",
+        ("*.obs", "*.rnx", "*.[0-9][0-9]o"),
+        remembering(one_table(read_obs)),
+        partial(looks_rinex, "O"),
+    ),
     Format(
         "RINEX navigation",
         ("*.nav", "*.rnx", "*.[0-9][0-9][nglp]"),
-        _once(_one(read_places)),
+        remembering(one_table(read_places)),
         partial(looks_rinex, "NG"),
         observations_beside,
     ),
-    Format("SP3 orbits", ("*.sp3",), _once(_one(read_sp3)), leader=observations_beside),
+    Format("SP3 orbits", ("*.sp3",), remembering(one_table(read_sp3)), leader=observations_beside),
 )
 SUFFIXES = tuple(dict.fromkeys(name.removeprefix("*") for one in FORMATS for name in one.names))
 
@@ -176,6 +129,10 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
         raise LogError(f"{path}: there is no such file; look at the path.")
     try:
         form = format_of(path)
+        if form is None and path.name.lower().endswith(_ARCHIVES):
+            raise LogError(
+                f"{path}: this is an archive of several files; unpack it, and name a log in it or a drive's folder."
+            )
         if form is None:
             known = ", ".join(SUFFIXES)
             raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {known}.")

@@ -62,7 +62,7 @@ class Topics:
             if len(of_it.fields.names) == 0:
                 bare.append(f"{topic} ({of_it.kind})")
                 continue
-            if of_it.rows or not self.handed_on:
+            if of_it.rows:  # else none could be decoded, which its reader says, or all are handed on
                 tables[topic] = of_it.table(self.path, topic, self.unit_of)
             cut += [f"{topic}.{field}" for field in of_it.fields.left_out]
         unknown = [f"{topic} ({why})" for topic, why in sorted(self._unknown.items())]

@@ -99,7 +99,9 @@ def begun(after: Belief, found: Bool[Array, ""]) -> Belief:
     first = alignment.moving(len(after.cov))
     vague = jnp.stack([after.cov[i, i] for i in (6, 7, 8)]).max() > LOST_M**2
     height = jnp.sqrt((after.nav.position**2).sum()) - alignment.EARTH_M
-    lost = (after.phase >= MOVING) & (vague | (jnp.abs(height) > NEAR_EARTH_M))
+    away = (after.phase >= MOVING) & ~(jnp.abs(height) < NEAR_EARTH_M)
+    lost = (after.phase >= MOVING) & vague | away
+    again = jnp.where(away, float(UNSEEN), float(NOWHERE))
     still = Navigation(jnp.eye(3), jnp.zeros(3), after.nav.position)
     fresh = found | lost | (after.phase < MOVING)
     return after._replace(
@@ -108,7 +110,7 @@ def begun(after: Belief, found: Bool[Array, ""]) -> Belief:
         cov=jnp.where(fresh, first, after.cov),
         apart=jnp.where(fresh, 0.0, after.apart),
         covs=jnp.where(fresh, first[None], after.covs),
-        phase=jnp.where(found, float(MOVING), jnp.where(lost, float(NOWHERE), after.phase)),
+        phase=jnp.where(found, float(MOVING), jnp.where(lost, again, after.phase)),
     )
 
 

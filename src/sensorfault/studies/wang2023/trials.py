@@ -46,9 +46,9 @@ def _who(runs: int, satellites: int) -> Sequence[tuple[int, int]]:
 def outcome(told: Flown, runs: int) -> list[dict[str, float]]:
     """Of each run of errors, over satellites and onsets.
 
-    `detected`: share of the fault's epochs in which the satellite is flagged, `delay_s`: until that is first so, at
-    most the fault's length; `found`: it was so at all. `wrong`: share of the epochs in which another one is flagged.
-    `rmse_m`: of the horizontal position in the fault.
+    `detection_rate`: share of the fault's epochs in which the satellite is flagged, `delay_s`: until that is first so,
+    at most the fault's length. `wrong_exclusions`: share of the epochs in which another one is flagged. `hrmse_m`: of
+    the horizontal position in the fault.
     """
     who = _who(runs, told.flagged.shape[2])
     rows = []
@@ -58,9 +58,9 @@ def outcome(told: Flown, runs: int) -> list[dict[str, float]]:
         others = np.delete(flagged, satellite, axis=1).any(axis=1)
         delay = float(np.argmax(mine)) if mine.any() else float(LASTS)
         square = np.mean(told.off_m[m, onset : onset + LASTS] ** 2)
-        rows.append((mine.mean(), delay, mine.any(), others.mean(), square))
-    each = np.array(rows, float).reshape(runs, -1, 5).mean(axis=1)
+        rows.append((mine.mean(), delay, others.mean(), square))
+    each = np.array(rows, float).reshape(runs, -1, 4).mean(axis=1)
     return [
-        {"detected": d, "delay_s": s, "found": f, "wrong": w, "rmse_m": float(np.sqrt(q))}
-        for d, s, f, w, q in each.tolist()
+        {"detection_rate": d, "delay_s": s, "wrong_exclusions": w, "hrmse_m": float(np.sqrt(q))}
+        for d, s, w, q in each.tolist()
     ]

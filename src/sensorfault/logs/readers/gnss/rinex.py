@@ -5,6 +5,7 @@ Source: RINEX 2.11 (Gurtner, 2007) and RINEX 3.04 (IGS/RTCM, 2018), section 4 an
 
 import calendar
 from dataclasses import dataclass, replace
+from datetime import MAXYEAR
 from pathlib import Path
 
 import numpy as np
@@ -113,4 +114,6 @@ def calendar_s(fields: list[str]) -> float:
     if not (1 <= month <= 12 and 1 <= day <= 31 and 0 <= hour < 24 and 0 <= minute < 60 and 0 <= second < 61):
         raise ValueError("no date and time")
     full = year if year >= 100 else year + (2000 if year < 80 else 1900)
+    if full > MAXYEAR:
+        raise ValueError("no year")
     return float(calendar.timegm((full, month, day, hour, minute, 0))) + second
