@@ -62,7 +62,8 @@ def along_course(
     about = CANT**2 * (jnp.eye(3) - up[:, None] * up[None]) + (head**2 + SLIP**2) * up[:, None] * up[None]
     states = len(cov)
     index = jnp.arange(states)
-    biases = jnp.where(index < ACC.start, gyro_bias**2, force_bias**2) * ((index >= GYRO.start) & (index < ACC.stop))
+    of_unit = (index >= GYRO.start) & (index < ACC.stop)
+    biases = jnp.where(of_unit, jnp.where(index < ACC.start, gyro_bias**2, force_bias**2), 0.0)
     own = jnp.pad(about, (0, states - 3)) + jnp.diag(biases)
     old = (index >= VEL.start) & (index < POS.stop) | (index >= CLOCK)
     return nav._replace(attitude=attitude), jnp.where(old[:, None] & old[None], cov, 0.0) + own

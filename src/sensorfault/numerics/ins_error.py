@@ -50,7 +50,9 @@ def transition(at: Navigation, way: Way, states: int) -> Float[Array, "n n"]:
         [none, none, none, eye, none],
         [none, none, none, none, eye],
     ]
-    clocks = jnp.eye(states - CLOCK) + tau * jnp.eye(states - CLOCK, k=1) * (jnp.arange(states - CLOCK) == 0)[:, None]
+    # the drift is that of the first clock alone
+    ramp = jnp.eye(states - CLOCK, k=1) * jnp.eye(states - CLOCK, 1)
+    clocks = jnp.eye(states - CLOCK) + tau * ramp
     left = jnp.zeros((15, states - CLOCK))
     inertial = jnp.concatenate([jnp.concatenate(row, axis=1) for row in blocks])
     return jnp.concatenate(

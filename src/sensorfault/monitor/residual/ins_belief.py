@@ -86,7 +86,7 @@ def _stretches(belief: Belief, epoch: Epoch, parts: int) -> list[Rows]:
     """The inertial rows without their biases, in so many stretches of the same length."""
     per = -(-epoch.dt.shape[0] // parts)
     more = per * parts - epoch.dt.shape[0]
-    rows = Rows(epoch.gyro - belief.own.gyro, epoch.force - belief.own.force, epoch.dt, epoch.ok)
+    rows = Rows(epoch.gyro - belief.own.gyro[None], epoch.force - belief.own.force[None], epoch.dt, epoch.ok)
     cut = jax.tree.map(
         lambda x: jnp.concatenate([x, jnp.zeros((more, *x.shape[1:]), x.dtype)]).reshape(parts, per, *x.shape[1:]),
         rows,
@@ -106,7 +106,8 @@ def begun(after: Belief, found: Bool[Array, ""]) -> Belief:
     fresh = found | lost | (after.phase < MOVING)
     return after._replace(
         nav=jax.tree.map(lambda new, old: jnp.where(fresh, new, old), still, after.nav),
-        own=after.own._replace(drift=jnp.where(fresh, 0.0, after.own.drift)),
+        # a filter that was wrong has laid it on the instruments: biases of any size would carry it off again
+        own=after.own._replace(**{x: jnp.where(fresh, 0.0, getattr(after.own, x)) for x in ("gyro", "force", "drift")}),
         cov=jnp.where(fresh, first, after.cov),
         apart=jnp.where(fresh, 0.0, after.apart),
         covs=jnp.where(fresh, first[None], after.covs),

@@ -52,7 +52,7 @@ def corrected(
 ) -> tuple[Float[Array, "B n"], Float[Array, "B n n"]]:
     """Each filter with what was taken of other satellites, and with the A aids behind them."""
     members = len(start.apart)
-    own = jnp.arange(len(taken)) % members == jnp.arange(members)[:, None]
+    own = (jnp.arange(len(taken)) % members)[None] == jnp.arange(members)[:, None]
     each = jnp.concatenate([taken[None] & ~own, jnp.broadcast_to(aided, (members, len(aided)))], axis=1)
     done: tuple[Array, Array] = jax.vmap(lambda m, p, t: correct(m, p, rows, z, variance, t))(
         start.apart, start.covs, each

@@ -45,17 +45,18 @@ def sight_lines(
     satellites, n = len(system), len(prior.cov)
     placed = jnp.isfinite(epoch.place).all(axis=1)
     up = upward(prior.nav.position)
-    place = jnp.where(placed[:, None], epoch.place, prior.nav.position + 2e7 * up)
+    place = jnp.where(placed[:, None], epoch.place, (prior.nav.position + 2e7 * up)[None])
     speed = jnp.where(jnp.isfinite(epoch.speed), epoch.speed, 0.0)
-    long, rate = jax.jvp(distance, (prior.nav.position, place), (prior.nav.velocity, speed))
-    away = turned(place, long / LIGHT_M_S) - prior.nav.position
+    here, moving = prior.nav.position[None], prior.nav.velocity[None]
+    long, rate = jax.jvp(distance, (here, place), (moving, speed))
+    away = turned(place, long / LIGHT_M_S) - here
     sight = away / jnp.sqrt((away**2).sum(axis=1))[:, None]
     elevation = jnp.arcsin(jnp.clip((sight * up[None]).sum(axis=1), -1.0, 1.0))
-    others = jnp.asarray(system)[:, None] == 1 + jnp.arange(n - OFFSETS)[None]
+    others = (jnp.asarray(system)[:, None] == 1 + jnp.arange(n - OFFSETS)[None]).astype(float)
     offset = (others * prior.own.offsets[None]).sum(axis=1)
     none, column = jnp.zeros((satellites, 3)), jnp.ones((satellites, 1))
     # z = u δr - δc: errors are estimate minus truth
-    rows = [none, none, sight, none, none, -column, 0 * column, -others.astype(float)]
+    rows = [none, none, sight, none, none, -column, 0 * column, -others]
     ranges = Lines(
         long + prior.own.clock + offset,
         jnp.concatenate(rows, axis=1),
@@ -65,13 +66,13 @@ def sight_lines(
     if rate_sigma is None:
         return ranges
     # z = u δv - δd
-    rows = [none, sight, none, none, none, 0 * column, -column, 0.0 * others]
-    moving = jnp.isfinite(epoch.speed).all(axis=1) & (prior.phase >= MOVING)
+    rows = [none, sight, none, none, none, 0 * column, -column, 0 * others]
+    timed = jnp.isfinite(epoch.speed).all(axis=1) & (prior.phase >= MOVING)
     rates = Lines(
         rate + prior.own.drift,
         jnp.concatenate(rows, axis=1),
         rate_sigma**2 * jnp.ones(satellites),
-        sample.fresh[satellites:] & placed & moving,
+        sample.fresh[satellites:] & placed & timed,
     )
     return Lines(*(jnp.concatenate(both) for both in zip(ranges, rates, strict=True)))
 
@@ -86,9 +87,9 @@ def clock_jump(
     far = jnp.where(there, jnp.abs(ranges) - 6 * jnp.sqrt(s), jnp.inf)
     jumped = (far.min() > JUMP_M) & (there.sum() >= LEAST) & (prior.phase >= MOVING)
     least = jnp.abs(ranges) + jnp.where(there, 0.0, jnp.inf)
-    by = jnp.where(least == least.min(), ranges, 0.0).sum() * jumped
+    by = jnp.where(least == least.min(), ranges, 0.0).sum() * jumped.astype(float)
     clock = (jnp.arange(len(prior.cov)) == CLOCK).astype(float)
-    apart = 1 - clock * jumped
+    apart = jnp.where(jumped, 1 - clock, 1.0)
     new = jnp.where(jumped, JUMP_M**2, 0.0) * jnp.diag(clock)
 
     def loose(cov: Array) -> Array:
@@ -100,5 +101,5 @@ def clock_jump(
         apart=prior.apart * apart[None],
         covs=jax.vmap(loose)(prior.covs),
     )
-    moved = jnp.concatenate([by * there, jnp.zeros(len(z) - satellites)])
+    moved = jnp.concatenate([jnp.where(there, by, 0.0), jnp.zeros(len(z) - satellites)])
     return prior, z - moved
