@@ -34,6 +34,7 @@ class Case:
     quiet: Sample | None = None  # healthy logs with a leading axis, to count false alarms on
     named: tuple[int, ...] | None = None  # channels that a fault is laid on; all by default
     lost: dict[int, tuple[int, ...]] = field(default_factory=dict)  # who cannot be judged while a channel is silent
+    tolerance: float = 1e-10  # of floats that two runners compute
     rate: float | None = None  # ... and the rate of them that each channel was designed for
 
     @property

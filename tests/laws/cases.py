@@ -13,6 +13,7 @@ import numpy as np
 import flown
 from laws.case import Case, limits_learned
 from laws.guests.zoo import zoo
+from laws.rides import navigating
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods import (
     ar_predictor,
@@ -316,6 +317,8 @@ DRIFTING = {name: functools.partial(drifting, name) for name in DRIFTS}
 HEIGHT = {name: functools.partial(observer, name) for name in OBSERVERS} | {"height-agreement": heights}
 # Their parts are those of another recipe of the same file, with another limit.
 TWINS = {"chi-square-ckf-01", "chi-square-ackf-05", "anfis-cubature-9m"}
+# Their filter is that of lof-efd, and their statistics hold nothing that those of train and the toy guests do not.
+TWINS |= {"innovation-chi-square", "averaged-innovation"}
 FOLLOWERS = {
     name: functools.partial(follower, name)
     for name in (
@@ -337,6 +340,7 @@ ALONE = {
     **HEIGHT,
     **DRIFTING,
     **FOLLOWERS,
+    **{name: functools.partial(navigating, name) for name in ("train", "lof-efd")},
 }
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE, *TWINS})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)

@@ -11,6 +11,7 @@ from sensorfault.numerics.strapdown import Navigation, cross, times
 UNSEEN, NOWHERE, MOVING, ALIGNED = range(4)  # phases: no satellite yet, no position, no attitude, all of it
 EARTH_M = 6.371e6
 ANYWHERE_M = 1e7  # standard deviation of a position of which nothing is known
+COARSE = 1e6  # by which variances grow meanwhile, so that so wide a covariance keeps its digits
 LEAST = 4  # satellites that tell a position
 FOUND_M = 100.0  # a round of least squares that moves no further has found the position
 SLOW = 3.0  # below this speed a course is no heading [m/s]

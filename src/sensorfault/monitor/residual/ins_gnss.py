@@ -94,7 +94,7 @@ class InsGnss(eqx.Module):
         aid, speeds, spread, ready = self._wheels(prior, sample.block)
         rows = jnp.concatenate([lines.rows, aid])
         z = jnp.concatenate([innovation, speeds])
-        variance = jnp.concatenate([lines.variance, spread])
+        variance = jnp.concatenate([lines.variance, spread]) * jnp.where(nowhere, alignment.COARSE, 1.0)
         error, cov = correct(mean, start.cov, rows, z, variance, jnp.concatenate([taken, ready & ~nowhere]))
         apart, covs = start.apart, start.covs
         if self.bank:

@@ -1,0 +1,64 @@
+"""Satellites and an inertial unit for the laws: six satellites that are always heard, five inertial rows a second."""
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+
+from laws.case import Case
+from sensorfault.logs.epochs import Framing, framing
+from sensorfault.logs.table import Log
+from sensorfault.methods import lof_efd, train
+from sensorfault.methods.navigating import Filter, monitor, navigation, normalised
+from sensorfault.run import samples
+from sensorfault.simulation import pseudorange
+from sensorfault.simulation.ride import recorded
+from sensorfault.simulation.train import ride
+
+SATELLITES, EPOCHS, LIE_M = 6, 280, 150.0
+DIGITS = 1e-5  # an innovation is what is left of 2.5e7 m, and the first position is found from nowhere
+BACK_S = 40.0  # a window of twenty epochs has forgotten, and the filter is what it was
+
+
+class _Ride(NamedTuple):
+    framing: Framing
+    epochs: Log
+
+
+@functools.cache
+def _ride(seed: int) -> _Ride:
+    """A ride without tunnels."""
+    true = ride(float(EPOCHS), seed=seed, noise="gaussian", imu_hz=5)
+    high = np.argsort(-true.sky.elevation.mean(axis=0))[:SATELLITES]
+    sky = true.sky.only(np.isin(np.arange(len(true.sky.names)), high))
+    error = pseudorange.errors("gaussian", [seed], sky.elevation)[0]
+    rate_error = np.zeros_like(error)
+    inertial = true.log.value[:, :6]
+    log = recorded("laws", true.log.time, inertial, true.epochs, sky, true.clock, error, rate_error)
+    how = framing(log, sky.names, False)
+    return _Ride(how, how.frame(log))
+
+
+def navigating(name: str) -> Case:
+    """A filter of these satellites alone, where a recipe has a place for each there is; fitted on one ride, before
+    another under the same sky.
+    """
+    healthy, unseen = _ride(1), _ride(2)
+    how = healthy.framing
+    if name == train.NAME:
+        own = Filter(bank=True)
+        branch = train.branch(how, train.means(how, normalised(how, healthy.epochs, own)), 8.0)
+    else:
+        own = Filter()
+        known, factors = lof_efd.history(normalised(how, healthy.epochs, own), 0)
+        branch = lof_efd.branch(how, known, 3 * float(factors.max()))
+    epochs = unseen.epochs
+    return Case(
+        name,
+        monitor(how, navigation(how, own), branch),
+        samples(epochs.time, epochs.value, epochs.fresh, epochs.block),
+        lie=np.full(SATELLITES, LIE_M),
+        back_s=BACK_S,
+        named=(1, 4),
+        tolerance=DIGITS,
+    )
