@@ -1,6 +1,6 @@
 """What a fitted monitor found in a log."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int8
@@ -41,3 +41,20 @@ class Detection:
     repaired: Float[np.ndarray, "T C"]
     traces: tuple[Trace, ...]
     events: tuple[Event, ...]
+
+    @property
+    def heard(self) -> "Detection":
+        """Of a log of epochs, without the satellites that never rose."""
+        kept = np.isfinite(self.log.value).any(axis=0)
+        if not self.log.block or kept.all() or not kept.any():
+            return self
+        log = self.log.select([channel.path for channel, k in zip(self.log.channels, kept, strict=True) if k])
+        mine = [sensor in log.sensors for sensor in self.log.sensors]
+        return replace(
+            self,
+            log=log,
+            watched=tuple(one for one, k in zip(self.watched, kept, strict=True) if k),
+            channel=self.channel[:, kept],
+            sensor=self.sensor[:, mine],
+            repaired=self.repaired[:, kept],
+        )

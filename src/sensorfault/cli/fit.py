@@ -49,8 +49,8 @@ def command(
     target = out or Path(f"{table.name}.sensorfault")
     save(model, target)
     watched = [c.path for c, w in zip(model.channels, model.watched, strict=True) if w]
-    show.say(f"Watches {', '.join(watched)}.")
-    for sentence in (*work.suspects(model), *work.not_watched(model), *work.rate(model)):
+    show.say(work.watches(watched))
+    for sentence in (*work.suspects(model), *work.not_watched(model), *work.smallest(model), *work.rate(model)):
         show.say(sentence)
     show.say(f"Wrote {target}.")
     show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from sensorfault.logs import Log
     from sensorfault.model import Model
 
+WATCHED_SAID = 24
 SUSPECTS_SAID = 10
 
 
@@ -115,6 +116,22 @@ def rate(model: "Model") -> tuple[str, ...]:
         f"False alarms: {told['held_out_alarms']} in the {told['held_out_s']:.0f} s held out from the fit, "
         f"{told['alarms_per_hour']:.3g} an hour; with 95 % confidence below {told['alarms_per_hour_below']:.3g}.",
     )
+
+
+def watches(paths: list[str]) -> str:
+    """What is watched; of very many the first."""
+    many = f" and {len(paths) - WATCHED_SAID} more" if len(paths) > WATCHED_SAID else ""
+    return f"Watches {', '.join(paths[:WATCHED_SAID])}{many}."
+
+
+def smallest(model: "Model") -> tuple[str, ...]:
+    """The smallest fault that can be seen, where the method knows it, and a warning where its gate sleeps."""
+    steps = model.summary.get("smallest_step_m")
+    if not steps:
+        return ()
+    said = ", ".join(f"{size:.1f} m {when}" for when, size in steps.items())
+    warning = model.summary.get("inert")
+    return (f"Smallest step found nine times of ten: {said}.", *([warning] if warning else []))
 
 
 def suspects(model: "Model") -> tuple[str, ...]:

@@ -52,6 +52,7 @@ def page(detection: Detection, truth: Sequence[Fault], title: str | None, summar
     """The page as text."""
     from plotly.offline import get_plotlyjs
 
+    detection = detection.heard
     charts = figures(detection, truth)
     here = files("sensorfault.evaluation")
     return Template(here.joinpath("page.html").read_text("utf-8")).substitute(

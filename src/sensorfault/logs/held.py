@@ -40,9 +40,11 @@ def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
     """Whether the rows are a held sensor's: many measurements last for several rows, all for about as many.
 
     Measurements are counted, not rows: one long standstill (a parked car, an airspeed of zero) holds nothing. And a
-    coarse reading that happens not to change lasts for one row as often as for many: that is no hold either.
+    coarse reading that happens not to change lasts for one row as often as for many: that is no hold either. Rows in
+    which the sensor said nothing do not count: one that speaks now and then holds nothing.
     """
-    start = np.flatnonzero(~repeats(value) & _any_finite(value))
+    value = value[_any_finite(value)]
+    start = np.flatnonzero(~repeats(value))
     if len(start) < 3:
         return False
     lasts = np.diff(start)

@@ -39,8 +39,8 @@ def _of_drives(numbers: Numbers, quick: bool) -> Iterator[str]:
     aime = ", ".join(f"{numbers.mean(textbook, f'aime-{w}', 'far'):.0%}" for w in (10, 30, 60))
     yield (
         f"Averaged innovations at the textbook's limit raise false alarms in {aime} of the healthy epochs (10, 30, "
-        "60 s): noise that lasts is no white noise. Where so much is left out the filter runs away: its errors are no "
-        "numbers to compare."
+        "60 s): noise that lasts is no white noise. Where so much is left out the filter runs away; a position "
+        "further off than a kilometre counts as a kilometre off."
     )
     apart = [
         f"{key.method} {values[0]:.2%}"

@@ -9,6 +9,7 @@ from jaxtyping import Float
 from sensorfault.studies.wang2023.campaign import Flown
 
 ONSETS, LASTS = (100, 200, 300), 80  # epochs
+LOST_M = 1000.0  # a position further off counts as so far off
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def outcome(told: Flown, runs: int) -> list[dict[str, float]]:
         mine = flagged[:, satellite]
         others = np.delete(flagged, satellite, axis=1).any(axis=1)
         delay = float(np.argmax(mine)) if mine.any() else float(LASTS)
-        square = np.mean(told.off_m[m, onset : onset + LASTS] ** 2)
+        square = np.mean(np.minimum(told.off_m[m, onset : onset + LASTS], LOST_M) ** 2)
         rows.append((mine.mean(), delay, others.mean(), square))
     each = np.array(rows, float).reshape(runs, -1, 4).mean(axis=1)
     return [
