@@ -59,6 +59,6 @@ def navigating(name: str) -> Case:
         samples(epochs.time, epochs.value, epochs.fresh, epochs.block),
         lie=np.full(SATELLITES, LIE_M),
         back_s=BACK_S,
-        named=(1, 4),
+        named=(4,),
         tolerance=DIGITS,
     )

@@ -47,7 +47,8 @@ def test_the_catalog() -> None:
     gates = {f"chi-square-{filter}-{far}" for filter in ("ckf", "ackf") for far in ("05", "01")}
     learned = {"double-threshold", "anfis-cubature", "anfis-cubature-9m", "logistic-cubature"}
     of_ranges = {"cooperative", *gates, *learned}
-    others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion, *of_height, *of_ranges}
+    of_satellites = {"train", "lof-efd", "innovation-chi-square", "averaged-innovation"}
+    others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion, *of_height, *of_ranges, *of_satellites}
     assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, *others}
     assert DEFAULT == "relative-conditioning"
     for name, recipe in METHODS.items():
