@@ -207,8 +207,8 @@ class Monitor(eqx.Module):
 
         def more(carry: _Round) -> Bool[Array, ""]:
             told, _, _, out, rounds = carry
-            enough = (residual.valid & ~out).sum() > self.least
-            return accused(told, out).any() & (rounds < self.most) & enough
+            going = accused(told, out).any() & (rounds < self.most)
+            return going & ((residual.valid & ~out).sum() > self.least) if self.least else going
 
         def strike(carry: _Round) -> _Round:
             told, _, struck, out, rounds = carry
