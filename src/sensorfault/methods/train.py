@@ -80,7 +80,7 @@ def _smallest(how: Framing, epochs: Log, own: Filter, seen: Means, limit: float)
     sigma = float(np.nanmedian(innovation / score))
     at_once, later = ((limit + NINE_OF_TEN) * float(spread) * sigma for spread in (seen.spread[0], seen.spread[-1]))
     told: dict[str, Any] = {"smallest_step_m": {"at once": at_once, f"in {how.period_s * WINDOWS[-1]:g} s": later}}
-    if bool(inert(np.asarray(at_once), ALERT_M)):
+    if inert(np.array([at_once]), ALERT_M).any():
         told["inert"] = f"A step below {at_once:.0f} m passes unseen at first: the filter doubts itself too much."
     return told
 
