@@ -13,7 +13,7 @@ from sensorfault.monitor.residual.sight_lines import Lines, clock_jump, sight_li
 from sensorfault.numerics import alignment
 from sensorfault.numerics.alignment import ALIGNED, LEAST, MOVING
 from sensorfault.numerics.ins_error import OFFSETS, POS, corrected
-from sensorfault.numerics.scalar_updates import correct
+from sensorfault.numerics.kalman import correct_many
 from sensorfault.types import Residual, Sample, Trust
 from sensorfault.vehicles.train import CarrierNoise, ElevationNoise, Grade
 
@@ -95,7 +95,7 @@ class InsGnss(eqx.Module):
         rows = jnp.concatenate([lines.rows, aid])
         z = jnp.concatenate([innovation, speeds])
         variance = jnp.concatenate([lines.variance, spread]) * jnp.where(nowhere, alignment.COARSE, 1.0)
-        error, cov = correct(mean, start.cov, rows, z, variance, jnp.concatenate([taken, ready & ~nowhere]))
+        error, cov = correct_many(mean, start.cov, rows, z, variance, jnp.concatenate([taken, ready & ~nowhere]))
         apart, covs = start.apart, start.covs
         if self.bank:
             apart, covs = left_out.corrected(start, rows, z, variance, taken, ready)

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.monitor.residual.ins_belief import Belief
-from sensorfault.numerics.scalar_updates import correct
+from sensorfault.numerics.kalman import correct_many
 
 
 def told(
@@ -54,7 +54,7 @@ def corrected(
     members = len(start.apart)
     own = (jnp.arange(len(taken)) % members)[None] == jnp.arange(members)[:, None]
     each = jnp.concatenate([taken[None] & ~own, jnp.broadcast_to(aided, (members, len(aided)))], axis=1)
-    done: tuple[Array, Array] = jax.vmap(lambda m, p, t: correct(m, p, rows, z, variance, t))(
+    done: tuple[Array, Array] = jax.vmap(lambda m, p, t: correct_many(m, p, rows, z, variance, t))(
         start.apart, start.covs, each
     )
     return done
