@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.navigating import Filter, fitted, framed, model, monitor, navigation, normalised
+from sensorfault.methods.navigating import Filter, fitted, framed, healthy, model, monitor, navigation
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
 from sensorfault.monitor.monitor import Branch
@@ -41,9 +41,10 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     epochs = how.frame(log)
     own = fitted(how, epochs, Filter())
     session.tell("the history of normal operation")
-    known, factors = history(normalised(how, epochs, own), seed)
+    residual = navigation(how, own)
+    known, factors = history(healthy(how, epochs, residual).normalised, seed)
     limit = density_limit(factors, FALSE_ALARMS)
-    heard = monitor(how, navigation(how, own), branch(how, known, limit))
+    heard = monitor(how, residual, branch(how, known, limit))
     told = {"false_alarms_of_density": FALSE_ALARMS, "limit": limit, "noise_factor": own.factor}
     return model(NAME, log, how, epochs, heard, ("outlier factor",), told)
 

@@ -1,11 +1,11 @@
 """What the methods share that judge satellites by an inertial navigation: framing, filter, monitor, model."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from sensorfault.logs.epochs import Framing, framing
 from sensorfault.logs.satellites import satellites
@@ -67,15 +67,11 @@ def framed(name: str, log: Log) -> Framing:
 
 def navigation(how: Framing, filter: Filter) -> InsGnss:
     """The filter of these satellites."""
-    return _navigation(how, filter, jnp.asarray(filter.factor))
-
-
-def _navigation(how: Framing, filter: Filter, factor: Float[Array, ""]) -> InsGnss:
     letters = list(dict.fromkeys(one[0] for one in how.satellites))
     zenith, horizon, scale = (jnp.asarray(x) for x in SIGMA)
     return InsGnss(
         grade=filter.grade,
-        noise=ElevationNoise(zenith, horizon, scale, factor),
+        noise=ElevationNoise(zenith, horizon, scale, jnp.asarray(filter.factor)),
         rate_sigma=jnp.asarray(RATE_M_S),
         wheel=jnp.asarray(WHEEL_M_S),
         aside=jnp.asarray(ASIDE_M_S),
@@ -104,26 +100,26 @@ def monitor(
     )
 
 
-def innovations(how: Framing, epochs: Log, filter: Filter) -> Float[np.ndarray, "T C"]:
-    """Innovations of a healthy log [SI], NaN where there was none."""
-    tape = replay_log(monitor(how, navigation(how, filter)), epochs)
-    return np.where(np.asarray(tape.valid), np.asarray(tape.residual), np.nan)
+class Healthy(NamedTuple):
+    """Innovations of a healthy log that is taken in whole: [SI], and in their standard deviations; NaN: none."""
+
+    innovation: Float[np.ndarray, "T C"]
+    normalised: Float[np.ndarray, "T C"]
 
 
-def normalised(how: Framing, epochs: Log, filter: Filter) -> Float[np.ndarray, "T C"]:
-    """Innovations of a healthy log in their standard deviations, NaN where there was none."""
-    own = monitor(how, navigation(how, filter))
-    tape = replay_log(own, epochs)
-    score: Float[np.ndarray, "T C"] = np.asarray(tape.scores[0])
-    return np.where(np.asarray(tape.valid), score * np.sign(np.asarray(tape.residual)), np.nan)
+def healthy(how: Framing, epochs: Log, residual: InsGnss) -> Healthy:
+    """What the filter makes of it with the limits off."""
+    tape = replay_log(monitor(how, residual), epochs)
+    value = np.where(np.asarray(tape.valid), np.asarray(tape.residual), np.nan)
+    return Healthy(value, np.asarray(tape.scores[0]) * np.sign(value))
 
 
 def fitted(how: Framing, epochs: Log, filter: Filter) -> Filter:
     """With the factor by which half of the healthy innovations are within what is half of a normal law."""
     factor = filter.factor
     for _ in range(2):
-        seen = normalised(how, epochs, Filter(factor, False, filter.grade))[:, : len(how.satellites)]
-        factor *= float(np.nanmedian(np.abs(seen))) / NORMAL
+        seen = healthy(how, epochs, navigation(how, Filter(factor, False, filter.grade)))
+        factor *= float(np.nanmedian(np.abs(seen.normalised[:, : len(how.satellites)]))) / NORMAL
     return Filter(factor, filter.bank, filter.grade)
 
 
@@ -131,9 +127,7 @@ def model(
     name: str, log: Log, how: Framing, epochs: Log, own: Monitor, tests: tuple[str, ...], told: dict[str, Any]
 ) -> Model:
     """`tests` names what each branch tests of each channel, behind a `*` if of all at once."""
-    deaf = monitor(how, own.residual)  # type: ignore[arg-type]
-    tape = replay_log(deaf, epochs)
-    size = np.where(np.asarray(tape.valid), np.abs(np.asarray(tape.residual)), np.nan)
+    size = np.abs(healthy(how, epochs, own.residual).innovation)  # type: ignore[arg-type]
     heard = np.isfinite(size).any(axis=0)
     sigma = np.ones(len(how.channels))
     sigma[heard] = np.nanmedian(size[:, heard], axis=0) / NORMAL

@@ -1,6 +1,5 @@
 """Faults of single satellites by filters that each leave one out: what is recommended for a train, or a car."""
 
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,13 +11,13 @@ from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
 from sensorfault.methods.navigating import (
     Filter,
+    Healthy,
     fitted,
     framed,
-    innovations,
+    healthy,
     model,
     monitor,
     navigation,
-    normalised,
 )
 from sensorfault.methods.recipe import Recipe
 from sensorfault.model import Model
@@ -29,7 +28,7 @@ from sensorfault.monitor.threshold.fixed import Fixed
 from sensorfault.numerics.integrity import inert
 from sensorfault.replay import replay_log
 from sensorfault.training.limits import tail_limit
-from sensorfault.training.means import fit_spread, means_of, windows
+from sensorfault.training.means import fit_spread, mean_tape, windows
 from sensorfault.training.session import Session
 
 NAME = "train"
@@ -45,7 +44,8 @@ def means(how: Framing, innovations: Float[np.ndarray, "T C"]) -> Means:
     """Windows of innovations with the spreads of these healthy ones."""
     period = how.period_s
     new = windows(tuple(period * w for w in WINDOWS), period, GAP * period, len(how.channels))
-    return fit_spread(new, means_of(innovations, tuple(round(w) for w in WINDOWS)))
+    tape = mean_tape(new, innovations, period)[round(max(WINDOWS)) :]  # windows that are not yet full count as nought
+    return fit_spread(new, tape.reshape(-1, len(WINDOWS)))
 
 
 def branch(how: Framing, own: Means, limit: float) -> Branch:
@@ -59,25 +59,25 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     epochs = how.frame(log)
     own = fitted(how, epochs, Filter(bank=True))
     session.tell("how far each satellite may be from a filter without it")
-    seen = means(how, normalised(how, epochs, own))
     residual = navigation(how, own)
+    told_of = healthy(how, epochs, residual)
+    seen = means(how, told_of.normalised)
     deaf = monitor(how, residual, branch(how, seen, np.inf))
     score = np.asarray(replay_log(deaf, epochs).scores[0])
     tested = np.isfinite(score).any(axis=1)
     largest = np.where(tested, np.nanmax(np.where(np.isfinite(score), score, -np.inf), axis=1), np.nan)
     limit = float(tail_limit(largest[:, None], how.period_s, PER_HOUR, BLOCK_S)[0])
     heard = monitor(how, residual, branch(how, seen, limit))
-    told = {"limit": limit, "noise_factor": own.factor, **_smallest(how, epochs, own, seen, limit)}
+    told = {"limit": limit, "noise_factor": own.factor, **_smallest(how, told_of, seen, limit)}
     return model(NAME, log, how, epochs, heard, ("cumulative innovation",), told)
 
 
-def _smallest(how: Framing, epochs: Log, own: Filter, seen: Means, limit: float) -> dict[str, Any]:
+def _smallest(how: Framing, told_of: Healthy, seen: Means, limit: float) -> dict[str, Any]:
     """The step of a pseudorange that nine of ten times is found with its first epoch, and within the longest window,
     at a satellite of middling noise [m]; and a warning where that is more than could matter.
     """
-    alone = replace(own, bank=False)
-    innovation, score = (f(how, epochs, alone)[:, : len(how.satellites)] for f in (innovations, normalised))
-    sigma = float(np.nanmedian(innovation / score))
+    ranges = slice(len(how.satellites))
+    sigma = float(np.nanmedian(told_of.innovation[:, ranges] / told_of.normalised[:, ranges]))
     at_once, later = ((limit + NINE_OF_TEN) * float(spread) * sigma for spread in (seen.spread[0], seen.spread[-1]))
     told: dict[str, Any] = {"smallest_step_m": {"at once": at_once, f"in {how.period_s * WINDOWS[-1]:g} s": later}}
     if inert(np.array([at_once]), ALERT_M).any():

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -28,18 +27,27 @@ def windows(length_s: tuple[float, ...], spacing_s: float, gap_s: float, channel
     )
 
 
-def mean_tape(means: Means, told: Residual) -> Float[np.ndarray, "T C W"]:
-    """The means after every sample of a healthy run's residuals, stacked over time; NaN where nothing was tested."""
-    return np.asarray(_over(means, told))
+def mean_tape(means: Means, normalised: Float[np.ndarray, "T C"], period_s: float) -> Float[np.ndarray, "T C W"]:
+    """The means after every epoch of a healthy run, `period_s` apart; NaN where nothing was tested.
+
+    `normalised`: z_i / √S_ii, NaN where nothing was tested.
+    """
+    time = period_s * np.arange(len(normalised))
+    return np.asarray(_over(means, jnp.asarray(time), jnp.asarray(normalised)))
 
 
-@eqx.filter_jit
-def _over(means: Means, told: Residual) -> Float[Array, "T C W"]:
-    def one(past: Any, row: Residual) -> tuple[Any, Float[Array, "C W"]]:
-        mean, past = means.over(past, row)
-        return past, jnp.where(row.valid[:, None], mean, jnp.nan)
+@jax.jit
+def _over(means: Means, time: Float[Array, " T"], normalised: Float[Array, "T C"]) -> Float[Array, "T C W"]:
+    unit, none = jnp.eye(normalised.shape[1]), jnp.zeros(normalised.shape[1], bool)
 
-    return jax.lax.scan(one, means.init(), told)[1]
+    def one(past: Any, row: tuple[Array, Array]) -> tuple[Any, Float[Array, "C W"]]:
+        now, told = row
+        valid = jnp.isfinite(told)
+        value = jnp.where(valid, told, 0.0)
+        mean, past = means.over(past, Residual(now, value, unit, value, value, value, valid, none))
+        return past, jnp.where(valid[:, None], mean, jnp.nan)
+
+    return jax.lax.scan(one, means.init(), (time, normalised))[1]
 
 
 def fit_spread(means: Means, tape: Float[np.ndarray, "M W"]) -> Means:
@@ -50,17 +58,3 @@ def fit_spread(means: Means, tape: Float[np.ndarray, "M W"]) -> Means:
     """
     spread = np.nanquantile(np.abs(tape), SHARE, axis=0) / NORMAL
     return replace(means, spread=means.spread * jnp.asarray(spread))
-
-
-def means_of(innovations: Float[np.ndarray, "T C"], lengths: tuple[int, ...]) -> Float[np.ndarray, "M W"]:
-    """Means of each channel's normalised innovations over the last so many samples, all channels one below the other.
-
-    NaN where one of them is missing.
-    """
-    sums = np.cumsum(np.pad(np.nan_to_num(innovations), ((1, 0), (0, 0))), axis=0)
-    there = np.cumsum(np.pad(np.isfinite(innovations), ((1, 0), (0, 0))), axis=0)
-    means = np.full((*innovations.shape, len(lengths)), np.nan)
-    for k, n in enumerate(lengths):
-        whole = there[n:] - there[:-n] == n
-        means[n - 1 :, :, k] = np.where(whole, (sums[n:] - sums[:-n]) / n, np.nan)
-    return means.reshape(-1, len(lengths))

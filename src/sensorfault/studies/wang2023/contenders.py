@@ -25,7 +25,7 @@ from sensorfault.numerics.blocks import enough
 from sensorfault.stage import Stage
 from sensorfault.studies.wang2023.campaign import SETTLED, Case, flown
 from sensorfault.training.density import density_limit
-from sensorfault.training.means import fit_spread, means_of, windows
+from sensorfault.training.means import fit_spread, mean_tape, windows
 from sensorfault.training.outlier_factor import fit_history
 
 NONE, LOF, CHI_SQUARE, ALONE, OURS = "no-exclusion", "lof-efd", "innovation-chi-square", "leave-one-out", "train"
@@ -95,5 +95,6 @@ def scored(
     """Windows of so many epochs with the spreads of these healthy innovations, and their means."""
     period = how.period_s
     means = windows(tuple(period * n for n in lengths), period, train.GAP * period, normalised.shape[2])
-    tape = np.concatenate([means_of(run[SETTLED:], lengths) for run in normalised])
+    tape = np.concatenate([mean_tape(means, run[SETTLED:], period)[max(lengths) :] for run in normalised])
+    tape = tape.reshape(-1, len(lengths))
     return fit_spread(means, tape), tape
