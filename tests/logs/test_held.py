@@ -93,3 +93,10 @@ def test_a_hold_that_nobody_described_is_pointed_out(tmp_path: Path) -> None:
     log = read(path, VehicleFile.parse('[file.log]\ntime = "t"\n[sensor.gnss.channel]\nv = { column = "v" }'))
     assert log.fresh.all()
     assert any("write held = true" in note for note in log.notes)
+
+
+def test_a_sensor_that_speaks_now_and_then_holds_nothing() -> None:
+    value = np.full((2000, 1), np.nan)
+    value[::100, 0] = np.arange(20.0)
+    assert not looks_held(value)
+    assert looks_held(np.repeat(np.arange(20.0), 100)[:, None])

@@ -1,5 +1,6 @@
 """A model that judges epochs: live as in a log, and to a file and back."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -57,3 +58,15 @@ def test_saved_and_loaded_it_says_the_same(tmp_path: Path) -> None:
     one, other = detect(small(), log()), detect(again, log())
     np.testing.assert_array_equal(one.channel, other.channel)
     jax.tree.map(np.testing.assert_array_equal, [t.score for t in one.traces], [t.score for t in other.traces])
+
+
+def test_a_page_leaves_out_satellites_that_never_rose() -> None:
+    names = (*small().framing.satellites, "G30")
+    how = replace(small().framing, satellites=names)
+    heard = monitor(how, navigation(how, Filter()), one_by_one(how, len(names), 1e-4))
+    found = detect(model("innovation", log(), how, how.frame(log()), heard, ("w",), {}), log())
+    assert len(found.log.sensors) == len(found.heard.log.sensors) + 1
+    assert "G30" not in [sensor.name for sensor in found.heard.log.sensors]
+    assert found.heard.channel.shape == found.heard.repaired.shape == found.heard.log.value.shape
+    assert found.heard.sensor.shape[1] == len(found.heard.log.sensors)
+    np.testing.assert_array_equal(found.heard.sensor[-5:, 3], FAULT)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -67,7 +68,7 @@ def test_on_gaussian_noise_innovations_are_as_large_as_the_filter_says() -> None
 @pytest.mark.usefixtures("_data")
 def test_a_limit_is_set_by_the_rate_that_it_achieves_and_finds_a_large_step_at_once() -> None:
     of = case()
-    free = watching(of.framing, navigation(of.framing, Filter()), Branch(Normalised(), Fixed(np.inf * np.ones(9))))
+    free = watching(of.framing, navigation(of.framing, Filter()), Branch(Normalised(), Fixed(jnp.inf * jnp.ones(9))))
     monitor, limit, reached = matched(free, of, pseudoranges("heavy", range(100, 124)), 0.02)
     assert 0.01 < reached < 0.04
     assert 2.5 < limit.low <= limit.limit <= limit.high < 6.0

@@ -29,7 +29,7 @@ def test_eight_satellites_are_heard_all_along(real_data: Path, monkeypatch: pyte
     assert max(ONSETS_S) + LASTS_S < of.epochs.duration_s
     taken = np.isfinite(of.epochs.value)
     blank = np.zeros((536, 3))
-    healthy = Navigated(blank, of.epochs.value, of.epochs.value, taken, taken)
+    healthy = Navigated(blank, of.epochs.value, of.epochs.value, taken, taken, ~taken, blank[:, 0])
     assert _alarms(of, healthy) == 0.0
     last = healthy._replace(taken=taken & (of.epochs.time < 133.7)[:, None])
     assert _alarms(of, last) == pytest.approx(1 / (of.epochs.time >= 60).sum())

@@ -14,17 +14,19 @@ from sensorfault.logs.table import Log
 from sensorfault.monitor.monitor import Monitor, MonitorState
 from sensorfault.numerics.geodesy import ecef_to_geodetic, enu_axes
 from sensorfault.run import samples
-from sensorfault.types import Sample
+from sensorfault.types import FAULT, Sample, Score
 
 
 class Navigated(NamedTuple):
-    """T epochs of C channels, as the filter ends each."""
+    """T epochs of C channels and S satellites, as the filter ends each; `score`: the first branch's largest, or NaN."""
 
     position: Float[np.ndarray, "*n T 3"]  # ECEF [m]
     innovation: Float[np.ndarray, "*n T C"]  # [SI]
     sigma: Float[np.ndarray, "*n T C"]  # √S_ii
     tested: Bool[np.ndarray, "*n T C"]
     taken: Bool[np.ndarray, "*n T C"]
+    flagged: Bool[np.ndarray, "*n T S"]
+    score: Float[np.ndarray, "*n T"]
 
 
 def navigated(monitor: Monitor, epochs: Log) -> Navigated:
@@ -45,12 +47,19 @@ def _rows(epochs: Log) -> Sample:
 def _run(monitor: Monitor, rows: Sample) -> tuple[Array, ...]:
     def one(state: MonitorState, sample: Sample) -> tuple[MonitorState, tuple[Array, ...]]:
         after, report = monitor.step(state, sample)
-        residual, taken = report.residual, report.trust.measured
+        residual, at = report.residual, after.residual.nav.position
         sigma = jnp.sqrt(jnp.diagonal(residual.cov))
-        return after, (after.residual.nav.position, residual.value, sigma, residual.valid, taken)
+        flagged = report.verdict.sensor == FAULT
+        told = at, residual.value, sigma, residual.valid, report.trust.measured, flagged, _largest(report.scores[0])
+        return after, told
 
     done: tuple[Array, ...] = lax.scan(one, monitor.init(), rows)[1]
     return done
+
+
+def _largest(score: Score) -> Float[Array, ""]:
+    largest = jnp.where(score.valid, score.value, -jnp.inf).max()
+    return jnp.where(score.valid.any(), largest, jnp.nan)
 
 
 @jax.jit
@@ -59,8 +68,8 @@ def _fleet(monitor: Monitor, rows: Sample, values: Float[Array, "N T C"]) -> tup
     return done
 
 
-def horizontal(position: Float[np.ndarray, "T 3"], true: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, " T"]:
+def horizontal(position: Float[np.ndarray, "*n T 3"], true: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "*n T"]:
     """How far off on the level [m]; both ECEF [m]."""
     latitude, longitude, _ = ecef_to_geodetic(true)
-    off = np.einsum("tij,tj->ti", enu_axes(latitude, longitude), position - true)
-    return np.asarray(np.hypot(off[:, 0], off[:, 1]))
+    off = np.einsum("tij,...tj->...ti", enu_axes(latitude, longitude), position - true)
+    return np.asarray(np.hypot(off[..., 0], off[..., 1]))
