@@ -36,6 +36,7 @@ def _ten(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_satellite_that_lies_is_named_and_nobody_else() -> None:
     model = fit(small(ride(110.0, 3, imu_hz=10).log), "train", held_out=0.0)
+    assert model.monitor.residual.bank
     at_once, later = model.summary["smallest_step_m"].values()
     assert 5.0 < later < at_once < 100.0
     assert model.summary["noise_factor"] == pytest.approx(0.85, abs=0.25)
