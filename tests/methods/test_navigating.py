@@ -65,7 +65,7 @@ def test_a_page_leaves_out_satellites_that_never_rose() -> None:
     how = replace(small().framing, satellites=names)
     heard = monitor(how, navigation(how, Filter()), one_by_one(how, len(names), 1e-4))
     epochs = how.frame(log())
-    epochs.value[:9, 2] = np.nan  # one that rises later stays
+    epochs.value[:9, [2, 2 + len(names)]] = np.nan  # one that rises later stays
     found = detect(model("innovation", log(), how, epochs, heard, ("w",), {}), epochs)
     assert len(found.log.sensors) == len(found.heard.log.sensors) + 1
     assert "G30" not in [sensor.name for sensor in found.heard.log.sensors]
