@@ -9,7 +9,7 @@ from laws.case import Case
 from sensorfault.logs.epochs import Framing, framing
 from sensorfault.logs.table import Log
 from sensorfault.methods import lof_efd, train
-from sensorfault.methods.navigating import Filter, monitor, navigation, normalised
+from sensorfault.methods.navigating import Filter, healthy, monitor, navigation
 from sensorfault.run import samples
 from sensorfault.simulation import pseudorange
 from sensorfault.simulation.ride import recorded
@@ -43,19 +43,19 @@ def navigating(name: str) -> Case:
     """A filter of these satellites alone, where a recipe has a place for each there is; fitted on one ride, before
     another under the same sky.
     """
-    healthy, unseen = _ride(1), _ride(2)
-    how = healthy.framing
+    learned, unseen = _ride(1), _ride(2)
+    how = learned.framing
+    residual = navigation(how, Filter(bank=name == train.NAME))
+    innovations = healthy(how, learned.epochs, residual).normalised
     if name == train.NAME:
-        own = Filter(bank=True)
-        branch = train.branch(how, train.means(how, normalised(how, healthy.epochs, own)), 8.0)
+        branch = train.branch(how, train.means(how, innovations), 8.0)
     else:
-        own = Filter()
-        known, factors = lof_efd.history(normalised(how, healthy.epochs, own), 0)
+        known, factors = lof_efd.history(innovations, 0)
         branch = lof_efd.branch(how, known, 3 * float(factors.max()))
     epochs = unseen.epochs
     return Case(
         name,
-        monitor(how, navigation(how, own), branch),
+        monitor(how, residual, branch),
         samples(epochs.time, epochs.value, epochs.fresh, epochs.block),
         lie=np.full(SATELLITES, LIE_M),
         back_s=BACK_S,
