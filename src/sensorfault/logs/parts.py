@@ -5,14 +5,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-import polars as pl
 
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.one_clock import put_on_one_clock
 from sensorfault.logs.place import find_vehicle, pair_files
 from sensorfault.logs.read import log_of
 from sensorfault.logs.readers.formats import format_of, read_tables
-from sensorfault.logs.readers.source import Ask, Source, Tables
+from sensorfault.logs.readers.source import Ask, Tables, joined
 from sensorfault.logs.stream import read_stream
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
@@ -81,7 +80,7 @@ class _Parts:
     more: int = 0
 
     def take(self, tables: Tables, last: bool = False) -> None:
-        both = _joined(self.before, tables)
+        both = joined(self.before, tables)
         self.damage |= dict.fromkeys(one.sentence(self.path) for source in tables.values() for one in source.damage)
         log = self._log(both)
         if log is None:
@@ -140,19 +139,6 @@ class _Parts:
             present = replace(present, zero_s=self.known.zero_s)
         notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
         return _widened(log_of(present, streams, clock, notes, ()), self.known)
-
-
-def _joined(before: Tables, now: Tables) -> Tables:
-    """Each table's rows of two parts, one after the other."""
-
-    def both(one: Source | None, two: Source | None) -> Source:
-        if one is None or two is None:
-            only = one or two
-            assert only is not None
-            return only
-        return replace(one, frame=pl.concat([one.frame, two.frame], how="diagonal_relaxed"))
-
-    return {name: both(before.get(name), now.get(name)) for name in {**before, **now}}
 
 
 def _widened(log: Log, known: VehicleFile) -> Log:
