@@ -5,19 +5,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from logs import written_ulog
+from logs import written_ardupilot, written_dataflash, written_ulog
 from sensorfault.logs import Log, guess, read
 from sensorfault.logs.parts import read_parts
-from sensorfault.logs.readers import telling, ulog_load
+from sensorfault.logs.readers import dataflash_pieces, dataflash_text, telling, topics, ulog_load
+
+CONTENT = {
+    ".ulg": written_ulog.flight(20.0),
+    ".bin": written_dataflash.flight(2, 20.0),
+    ".log": written_ardupilot.text(20.0).encode(),
+    ".tlog": written_ardupilot.tlog(60.0),
+}
 
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(telling, "_BUFFER_BYTES", 1000)
     monkeypatch.setattr(ulog_load, "PART", 1000)
-
-
-CONTENT = {".ulg": written_ulog.flight(20.0)}
+    monkeypatch.setattr(topics, "PART", 1000)
+    monkeypatch.setattr(dataflash_pieces, "PIECE_BYTES", 5000)
+    monkeypatch.setattr(dataflash_text, "PART_CELLS", 2000)
 
 
 def put(folder: Path, suffix: str, content: bytes) -> Path:
