@@ -12,6 +12,7 @@ from sensorfault.logs.guess.naming import stem_of
 from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.stock import PX4, Fields, recognised
 from sensorfault.logs.guess.time import guess_time
+from sensorfault.logs.readers.beginning import is_long, read_beginning
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
@@ -54,7 +55,7 @@ class Look:
 def look_at(file: Path, tell: Callable[[float], None]) -> Look:
     """What one file's tables are; of an autopilot's, those that are sensors."""
     try:
-        tables = read_tables(file, Ask(tell=tell))
+        tables = read_beginning(file, tell) if is_long(file) else read_tables(file, Ask(tell=tell))
     except LogError as error:
         return Look([], [error], [])
     said = [said for one in tables.values() for said in (*(broken.sentence(file) for broken in one.damage), *one.notes)]

@@ -118,3 +118,18 @@ def told(tables: Tables, notes: Iterable[str], damage: Iterable[Damage] = ()) ->
     return {
         name: replace(one, notes=(*one.notes, *said), damage=(*one.damage, *broken)) for name, one in tables.items()
     }
+
+
+def joined(before: Tables, now: Tables) -> Tables:
+    """Each table's rows of two parts of a file, one after the other."""
+
+    def both(one: Source | None, two: Source | None) -> Source:
+        if one is None or two is None:
+            only = one or two
+            assert only is not None
+            return only
+        frame = pl.concat([one.frame, two.frame], how="diagonal_relaxed")
+        notes, damage = dict.fromkeys((*one.notes, *two.notes)), dict.fromkeys((*one.damage, *two.damage))
+        return replace(one, frame=frame, notes=tuple(notes), damage=tuple(damage))
+
+    return {name: both(before.get(name), now.get(name)) for name in {**before, **now}}

@@ -11,7 +11,7 @@ import polars as pl
 
 from sensorfault.logs.readers.fields import Fields
 from sensorfault.logs.readers.ros_types import si_unit_of
-from sensorfault.logs.readers.source import PART, Ask, Source, Tables
+from sensorfault.logs.readers.source import PART, Ask, Source, Tables, told
 
 RECEIVED, STAMP = "received_time", "header.stamp"
 _APART_S = 3600.0  # stamps so far from the recording's clock are of another clock
@@ -44,7 +44,7 @@ class Topics:
 
     def _hand_on(self, part: Callable[[Tables], None]) -> None:
         """All that has been gathered, which is then forgotten."""
-        part(self.tables()[0])
+        part(told(*self.tables()))
         for of_it in self._topics.values():
             of_it.clear()
         self._numbers, self.handed_on = 0, True
