@@ -49,7 +49,7 @@ FORMATS = (
     Format("RTKLIB solution", ("*.pos",), one_table(read_pos)),
     Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), remembering(read_mat)),
-    Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog)),
+    Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog), parts=True),
     Format("ROS 1 bag", ("*.bag",), remembering(read_bag1), parts=True),
     Format("ROS 2 bag", ("*.db3",), remembering(read_bag2), leader=first_part, parts=True),
     Format("MCAP", ("*.mcap",), remembering(read_mcap), leader=first_part, parts=True),
