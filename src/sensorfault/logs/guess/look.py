@@ -23,7 +23,7 @@ _ROWS = 500_000  # a guess looks at so many rows from the beginning
 
 @dataclass(frozen=True)
 class Guess:
-    """One table: its clock and the sensors in it."""
+    """One table: its clock and the sensors in it. `times`: the file that its times stand in, where that is another."""
 
     path: Path
     columns: tuple[str, ...]
@@ -31,6 +31,7 @@ class Guess:
     clock: Clock
     sensors: list[SensorEntry]
     topic: str = ""  # that its whole file is
+    times: Path | None = None
 
     @property
     def called(self) -> str:
@@ -128,7 +129,7 @@ def _guess_table(source: Source, table: str | None, fields: Fields | None) -> Gu
         why=why,
         left_out=tuple(left_out),
     )
-    return Guess(path, tuple(source.frame.columns), file, clock, sensors)
+    return Guess(path, tuple(source.frame.columns), file, clock, sensors, times=source.times)
 
 
 def _sensors(

@@ -53,6 +53,7 @@ class Source:
     `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
+    `times`: the file that its time column stands in, where that is another.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
 
@@ -66,6 +67,7 @@ class Source:
     sensors: tuple[SensorEntry, ...] = ()
     units: Mapping[str, str] = field(default_factory=dict)
     table: str = ""
+    times: Path | None = None
 
     @property
     def name(self) -> str:
