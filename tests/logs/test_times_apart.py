@@ -26,6 +26,7 @@ def test_a_folder_of_tables_is_one_log(tmp_path: Path, header: str) -> None:
     np.testing.assert_array_equal(log.value[:, log.of("state_c")], STATE[:-1])
     np.testing.assert_array_equal(log.value[:, log.of("command_c")], STATE[:-1] * 2)
     assert log.name == tmp_path.name
+    assert not any("time.csv" in note for note in log.notes)
 
 
 def test_one_table_of_it(tmp_path: Path) -> None:
