@@ -37,7 +37,7 @@ def put(folder: Path, suffix: str, content: bytes) -> Path:
 
 def assert_whole(path: Path) -> list[str]:
     whole, parts = read(path), list[Log]()
-    said = read_parts(path, parts.append)
+    said = read_parts(path, parts.append).notes
     assert len(parts) > 5
     assert all(part.channels == whole.channels and part.epoch_s == pytest.approx(whole.epoch_s) for part in parts)
     np.testing.assert_allclose(np.concatenate([part.time for part in parts]), whole.time, atol=1e-6)

@@ -12,7 +12,7 @@ import polars as pl
 from sensorfault.logs.readers.fields import Fields
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.ros_types import si_unit_of
-from sensorfault.logs.readers.source import PART, Ask, Source, Tables
+from sensorfault.logs.readers.source import PART, Ask, Source, Tables, told
 
 RECEIVED, STAMP = "received_time", "header.stamp"
 _APART_S = 3600.0  # stamps so far from the recording's clock are of another clock
@@ -46,7 +46,7 @@ class Topics:
         self._topics[topic].take(received_ns, message)
         self._numbers += len(self._topics[topic].fields.names)
         if self._handing.asked and self._numbers >= PART:
-            self._handing.on(self._gathered())
+            self._handing.on(told(self._gathered(), self._left_out()))
             for of_it in self._topics.values():
                 of_it.clear()
             self._numbers = 0
@@ -57,6 +57,9 @@ class Topics:
 
     def tables(self) -> tuple[Tables, list[str]]:
         """The tables, or the last part of them, and what was left out, in sentences."""
+        return self._handing.rest(self._gathered()), self._left_out()
+
+    def _left_out(self) -> list[str]:
         notes: list[str] = []
         bare, cut = [], []
         for topic, of_it in self._topics.items():
@@ -72,7 +75,7 @@ class Topics:
         ):
             if listed:
                 notes.append(f"{self.path.name}: {what} left out: {', '.join(listed)}.")
-        return self._handing.rest(self._gathered()), notes
+        return notes
 
     def _gathered(self) -> Tables:
         """A topic without a row is none: no message could be decoded, which its reader says, or all are handed on."""
