@@ -1,5 +1,6 @@
 """An autopilot's log read part by part is the log read whole, and so is what is said of it."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -56,11 +57,17 @@ def test_parts_are_the_whole(tmp_path: Path, suffix: str) -> None:
 def test_damage_is_said_at_its_place_in_the_file(tmp_path: Path, suffix: str) -> None:
     content = CONTENT[suffix]
     at = 3 * len(content) // 4
-    said = assert_whole(put(tmp_path, suffix, content[:at] + b"\x00" * 200 + content[at + 200 :]))
-    print(said)
+    said = assert_whole(put(tmp_path, suffix, content[:at] + b"\n" + b"\x00" * 58 + b"\n" + content[at + 60 :]))
+    place = content[:at].count(b"\n") + 1 if suffix == ".log" else at
+    (where,) = (re.search(r"(?:line|byte) (\d+)", note) for note in said if "the others were read" in note)
+    assert where is not None
+    assert place - 200 < int(where[1]) < place + 2000
 
 
 @pytest.mark.parametrize("cut", [1, 2, 3, 17, 800])
 @pytest.mark.parametrize("suffix", CONTENT)
 def test_a_file_that_breaks_off_is_read_so_far(tmp_path: Path, suffix: str, cut: int) -> None:
-    assert_whole(put(tmp_path, suffix, CONTENT[suffix][:-cut]))
+    assert any(
+        "breaks off" in note or "no whole message" in note
+        for note in assert_whole(put(tmp_path, suffix, CONTENT[suffix][:-cut]))
+    )
