@@ -1,15 +1,16 @@
 """An autopilot's log read part by part is the log read whole, and so is what is said of it."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from logs import written_ardupilot, written_dataflash, written_ulog
+from logs.small_parts import small_parts
 from sensorfault.logs import Log, guess, read
 from sensorfault.logs.parts import read_parts
-from sensorfault.logs.readers import dataflash_pieces, dataflash_text, telling, topics, ulog_load
 
 CONTENT = {
     ".ulg": written_ulog.flight(20.0),
@@ -20,12 +21,9 @@ CONTENT = {
 
 
 @pytest.fixture(autouse=True)
-def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(telling, "_BUFFER_BYTES", 1000)
-    monkeypatch.setattr(ulog_load, "PART", 1000)
-    monkeypatch.setattr(topics, "PART", 1000)
-    monkeypatch.setattr(dataflash_pieces, "PIECE_BYTES", 5000)
-    monkeypatch.setattr(dataflash_text, "PART_CELLS", 2000)
+def in_small_parts() -> Iterator[None]:
+    with small_parts():
+        yield
 
 
 def put(folder: Path, suffix: str, content: bytes) -> Path:
