@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 
 from sensorfault.detection import Detection, Trace
-from sensorfault.evaluation.page import figures, write_page
+from sensorfault.evaluation import page
+from sensorfault.evaluation.page import write_page
 from sensorfault.evaluation.page_lines import extremes, line, near, runs
-from sensorfault.evaluation.page_signals import replaced, stale
+from sensorfault.evaluation.page_sketch import Sketch, replaced, stale
 from sensorfault.evaluation.page_words import clock, found, result
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
@@ -110,6 +111,10 @@ def drive(seconds: float = 60, name: str = "drive", gyro: str = "gyro") -> Detec
     return Detection(
         log, "elm", (True, True, False), channel, sensor, sensor.max(axis=1), still(rows), repaired, traces, events
     )
+
+
+def figures(detection: Detection, truth: tuple[Fault, ...] = ()) -> dict:
+    return page.figures(Sketch.of(detection), truth)
 
 
 def still(rows: int) -> np.ndarray:
@@ -268,7 +273,7 @@ def test_events_without_a_sensor_are_told_apart(tmp_path):
     events = (nameless, replace(nameless, subject="motion"), replace(nameless, kind="miss"))
     detection = replace(drive(), events=events)
     said = "1 fault, 1 of them not laid to one sensor, 1 implausible motion, 1 gap in the log; 1 sensor watched"
-    assert result(detection).startswith(said)
+    assert result(Sketch.of(detection)).startswith(said)
     rows = written(tmp_path, detection).rows
     assert [row[3] for row in rows] == ["unknown which", "vehicle motion", "all (gap in the log)"]
     assert [row[6] for row in rows] == ["5 / 1", "5 / 1", "5 / 1 s silent"]
