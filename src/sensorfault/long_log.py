@@ -44,10 +44,10 @@ def detect_long(
             f"{path}: {model.method} judges epochs of satellites, which are not cut in parts; read it whole."
         )
     judging = _Judging(model)
-    notes = read_parts(path, judging.take, vehicle, tell)
+    said = read_parts(path, judging.take, vehicle, tell)
     assert judging.first is not None  # a file without a part is an error
     events = tuple(judging.follower.events)
-    return LongDetection(judging.first, model.method, judging.rows, judging.end_s, events, notes)
+    return LongDetection(judging.first, model.method, judging.rows, judging.end_s, events, said.notes)
 
 
 class _Judging:

@@ -1,7 +1,7 @@
 """`info`: what a log holds and which methods can watch it."""
 
 import json
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,8 @@ import fitted
 from cli.conftest import Run
 from logs.written_ros import mcap
 from logs.written_ulog import flight
-from sensorfault.logs.summary import summarise
+from sensorfault.logs import summary
+from sensorfault.logs.summary import Summing, summarise
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import METHODS
 from sensorfault.training.session import Session
@@ -74,6 +75,23 @@ def test_gaps_and_holds_of_a_sensor() -> None:
     assert gyro.longest_gap_s == pytest.approx(log.time[260] - log.time[199])
     assert gyro.missing == pytest.approx(60 / len(log))
     assert gyro.held == pytest.approx(45 / (len(log) - 60))
+
+
+def test_parts_of_a_log_sum_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    log = fitted.rig().between(end_s=20.0)
+    log = log.without(np.arange(650, 700))  # a gap that begins with the last row of a part
+    whole = summarise(log)
+    assert all(one.gaps for one in whole)
+    for most in (100, 800, 1 << 20):  # the usual step is known before the gap, after it, or at the end
+        monkeypatch.setattr(summary, "MOST_STEPS", most)
+        summing = Summing()
+        for start in range(0, len(log), 50):
+            rows = slice(start, start + 50)
+            summing.take(replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows]))
+        assert (summing.rows, summing.end_s) == (len(log), log.time[-1])
+        for mine, theirs in zip(summing.sensors, whole, strict=True):
+            assert (mine.name, mine.channels, mine.units) == (theirs.name, theirs.channels, theirs.units)
+            assert astuple(mine)[3:] == pytest.approx(astuple(theirs)[3:], rel=1e-9)
 
 
 @pytest.mark.parametrize("name", [name for name, recipe in METHODS.items() if not recipe.parts])

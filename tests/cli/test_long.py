@@ -1,12 +1,15 @@
 """`detect` on a log that is read part by part."""
 
 import json
+import os
 from pathlib import Path
 
 import pytest
 
 from cli.conftest import Run
-from sensorfault.cli import long
+from sensorfault.logs.readers import beginning, csv
+
+NUMBERS = "measurements", "rate_hz", "held", "missing"
 
 
 def test_by_parts_it_finds_the_same(run: Run, drive: Path, car: Path) -> None:
@@ -23,23 +26,37 @@ def test_by_parts_it_finds_the_same(run: Run, drive: Path, car: Path) -> None:
     assert told["judged_s"] == pytest.approx(whole["judged_s"], abs=1e-6)
 
 
-def test_a_large_file_is_read_by_parts_where_it_can_be(
+def test_a_long_file_is_read_by_parts_where_it_can_be(
     run: Run, drive: Path, car: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(long, "LARGE", 1000)
-    assert "part by part" not in run("detect", drive, "--model", car).err  # nobody says what its columns are
-    run("init", drive)
+    assert "part by part" not in run("detect", drive, "--model", car).err
+    monkeypatch.setattr(beginning, "LONG", 1000)
     assert "part by part" in run("detect", drive, "--model", car).err
     assert "part by part" not in run("detect", drive, "--model", car, "--whole").err
+    assert "part by part" not in run("detect", drive, "--model", car, "--report", "page.html").err
 
 
-def test_what_parts_cannot_do_is_a_sentence(run: Run, drive: Path, car: Path) -> None:
+def test_by_parts_a_log_holds_the_same(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
+    whole, parts = (json.loads(run("info", drive, "--json", "-", way).out) for way in ("--whole", "--by-parts"))
+    for key in ("duration_s", "tick_s"):
+        assert parts.pop(key) == pytest.approx(whole.pop(key))
+    for mine, theirs in zip(parts.pop("sensors"), whole.pop("sensors"), strict=True):
+        assert [mine[key] for key in NUMBERS] == pytest.approx([theirs.pop(key) for key in NUMBERS], rel=1e-6)
+        assert theirs.items() <= mine.items()
+    assert parts == whole
+
+
+def test_what_parts_cannot_do_is_a_sentence(run: Run, drive: Path, car: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for words, said in (
         (("--by-parts",), "needs a --model"),
         (("--by-parts", "--model", car, "--report", "page.html"), "a report needs the whole log"),
-        (("--by-parts", "--model", car), "needs a vehicle.toml"),
     ):
         answer = run("detect", drive, *words)
         assert answer.code == 2
         assert said in answer.err
         assert not Path("page.html").exists()
+    monkeypatch.setattr(os, "sysconf", {"SC_PHYS_PAGES": 2, "SC_PAGE_SIZE": 4096}.get)
+    answer = run("detect", drive)
+    assert answer.code == 2
+    assert "cannot be read whole in 8.19e-06 GB of memory" in answer.err

@@ -9,8 +9,10 @@ import pytest
 import fitted
 from logs.written_ros import bag1, bag2
 from sensorfault.logs import Log, LogError, guess, read, write
-from sensorfault.logs.parts import has_parts, read_parts
-from sensorfault.logs.readers import csv, parquet, topics
+from sensorfault.logs.parts import is_long_log, read_parts
+from sensorfault.logs.read import GUESSED
+from sensorfault.logs.readers import beginning, csv, parquet, topics
+from sensorfault.logs.readers.formats import read_tables
 
 
 @pytest.fixture(autouse=True)
@@ -35,6 +37,12 @@ def assert_whole(path: Path) -> None:
     np.testing.assert_array_equal(np.concatenate([part.fresh for part in parts]), whole.fresh)
 
 
+def recorded(folder: Path, way: str, seconds: float) -> Path:
+    if way == "bag":
+        return bag1(folder / "drive.bag", seconds=seconds)
+    return bag2(folder / "drive", way == "mcap", seconds)
+
+
 @pytest.mark.parametrize("name", ["drive.csv", "drive.parquet", "blanks.txt"])
 def test_a_table_with_held_and_missing_values(tmp_path: Path, name: str) -> None:
     log = fitted.rig().between(end_s=60.0)
@@ -55,7 +63,7 @@ def test_a_table_with_held_and_missing_values(tmp_path: Path, name: str) -> None
 
 @pytest.mark.parametrize("way", ["bag", "db3", "mcap"])
 def test_topics_of_several_rates(tmp_path: Path, way: str) -> None:
-    path = bag1(tmp_path / "drive.bag", seconds=8.0) if way == "bag" else bag2(tmp_path / "drive", way == "mcap", 8.0)
+    path = recorded(tmp_path, way, 8.0)
     path.with_suffix(".vehicle.toml").write_text(guess(path).to_toml())
     assert_whole(path)
 
@@ -76,24 +84,74 @@ def test_a_cut_file_is_read_as_far_as_it_is_whole(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes()[:-50_000])
     whole, parts = read(path), []
     said = read_parts(path, parts.append)
-    assert set(whole.damage) <= set(said)
+    assert set(whole.damage) == set(said.damage) <= set(said.notes)
     assert parts[-1].time[-1] == pytest.approx(whole.time[-1], abs=1e-6)
 
 
 def test_what_cannot_be_read_in_parts_is_a_sentence(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
-    with pytest.raises(LogError, match="this is a folder or nothing"):
+    with pytest.raises(LogError, match="there is no such file or folder"):
         read_parts(path, print)
-    path.write_text("time,a\n0,1\n1,2\n")
-    with pytest.raises(LogError, match=r"needs a vehicle\.toml"):
-        read_parts(path, print)
-    assert not has_parts(path)
     (tmp_path / "log.mat").write_bytes(b"x")
-    with pytest.raises(LogError, match="MATLAB, which is read whole"):
+    with pytest.raises(LogError, match="this is MATLAB, which is read whole"):
         read_parts(tmp_path / "log.mat", print)
     write(fitted.rig().between(end_s=2.0), path)
-    assert has_parts(path)
+    with pytest.raises(LogError, match=r"this is 2 files; .* one file of: text table, Parquet"):
+        read_parts(tmp_path, print)
+    (tmp_path / "log.mat").unlink()
     lines = path.read_text().splitlines(keepends=True)
     path.write_text(lines[0] + lines[1])
     with pytest.raises(LogError, match="one row is no log"):
         read_parts(path, print)
+
+
+def test_without_a_vehicle_file_columns_are_guessed(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    write(fitted.rig().between(end_s=60.0), path).unlink()
+    assert_whole(path)
+    assert GUESSED in read_parts(path, len).notes
+
+
+def test_a_folder_of_one_recording_is_that_recording(tmp_path: Path) -> None:
+    path = bag2(tmp_path / "drive", True, 8.0)
+    whole, parts = read(path), []
+    read_parts(path.parent, parts.append)
+    np.testing.assert_array_equal(np.concatenate([part.value for part in parts]), whole.value)
+
+
+@pytest.mark.parametrize("way", ["bag", "db3", "mcap"])
+def test_an_error_of_whoever_takes_the_parts_comes_through(tmp_path: Path, way: str) -> None:
+    def refuse(part: Log) -> None:
+        raise LogError("no.")
+
+    path = recorded(tmp_path, way, 8.0)
+    with pytest.raises(LogError, match=r"^no\.$"):
+        read_parts(path, refuse)
+
+
+@pytest.mark.parametrize("way", ["csv", "bag", "db3", "mcap"])
+def test_a_long_log_is_guessed_from_its_beginning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
+    if way == "csv":
+        path = tmp_path / "drive.csv"
+        write(fitted.rig().between(end_s=120.0), path).unlink()
+    else:
+        path = recorded(tmp_path, way, 20.0)
+    whole = guess(path)
+    assert not is_long_log(path)
+    monkeypatch.setattr(beginning, "LONG", path.stat().st_size - 1)
+    assert is_long_log(path)
+    seen = sum(len(one.frame) for one in beginning.read_beginning(path).values())
+    assert seen < 0.9 * sum(len(one.frame) for one in read_tables(path).values())
+    found = guess(path)
+    assert found.files == whole.files
+    assert len(found.sensors) == len(whole.sensors)  # what of them is constant, or wraps, shows in the whole alone
+    assert {note for note in whole.notes if "topics" in note} <= set(found.notes)
+    assert any("only its beginning was looked at" in note for note in found.notes)
+
+
+def test_the_parts_of_a_bag_are_long_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    only = bag2(tmp_path / "drive", True, 2.0)
+    first = only.rename(only.with_name("drive_0.mcap"))
+    first.with_name("drive_1.mcap").write_bytes(first.read_bytes())
+    monkeypatch.setattr(beginning, "LONG", first.stat().st_size)
+    assert is_long_log(first.parent)

@@ -1,5 +1,6 @@
 """Sane guesses on logs that nobody here made: by air, by water and by radio."""
 
+import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -75,3 +76,21 @@ def test_a_walk_whose_recording_began_inside_a_line(real_data: Path) -> None:
     assert len(log) == 20455
     assert any("first line is cut off" in note for note in log.notes)
     assert log.epoch_s == pytest.approx(1756402240.96 - 18, abs=1.0)
+
+
+def test_a_run_of_an_arm(real_data: Path, tmp_path: Path) -> None:
+    with tarfile.open(real_data / "arm" / "schunk_arm.tar.gz") as archive:
+        archive.extractall(
+            tmp_path, [one for one in archive if one.name.startswith("Robot/measurement_85/")], filter="data"
+        )
+    folder = tmp_path / "Robot" / "measurement_85"
+    found = sane(folder)
+    assert {name: len(channels) for name, channels in found.items()} == {"input_c": 6, "trajectory_c": 12}
+    log = read(folder)
+    assert log.duration_s == pytest.approx(4.344, abs=1e-6)
+    assert log.period_s == pytest.approx(0.004)
+    assert log.value[0, log.of("trajectory_c")[:3]] == pytest.approx([-0.59223, -0.16092, -2.1219])
+    assert log.value[0, log.of("input_c")[:3]] == pytest.approx([1.4943, 2.7749, 4.4898])
+    assert np.isfinite(log.value).all()
+    with pytest.raises(LogError, match="unpack it"):
+        read(real_data / "arm" / "schunk_arm.tar.gz")

@@ -27,13 +27,7 @@ if TYPE_CHECKING:
     help="Also write the events: .jsonl, .csv or .parquet; .mcap, annotations for viewers (with the log's messages, "
     "if it is an .mcap); .bag (ROS 1) or a new folder (ROS 2) of DiagnosticArray. May be given several times.",
 )
-@click.option(
-    "--by-parts/--whole",
-    "by_parts",
-    default=None,
-    help="Read CSV, Parquet, MCAP or a ROS bag part by part, in memory that does not grow with the file: events only, "
-    "by a --model and a vehicle.toml. By itself where the file is larger than 1 GB.",
-)
+@options.by_parts_option
 @click.option("--report", "report_path", type=click.Path(path_type=Path), help="Also write a report page (HTML).")
 @options.seed_option
 @options.json_option
@@ -51,14 +45,15 @@ def command(
 ) -> None:
     """List the faults of a log: when, which sensor and channel, what kind.
 
-    Without --model the method is fitted on the log's own beginning, which is then taken as healthy.
+    Without --model the method is fitted on the log's own beginning, which is then taken as healthy. By parts there are
+    only events, found by a --model.
     """
     from sensorfault.export import check
 
     for out in outs:
         check(out)
     work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
-    if long.by_parts(log, vehicle, by_parts, model_path, report_path):
+    if long.judged_by_parts(log, by_parts, model_path, report_path):
         assert model_path is not None
         told = long.detect(log, vehicle, model_path)
         _write(told.events, told.log, log, outs, json_path)

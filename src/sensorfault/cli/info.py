@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import long, options, show, work
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
-    from sensorfault.logs.summary import SensorSummary
+    from sensorfault.logs.joining import Said
+    from sensorfault.logs.summary import SensorSummary, Summing
 
 _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at", "held %")
 
@@ -17,8 +18,9 @@ _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at",
 @click.command("info")
 @options.log_argument
 @options.vehicle_option
+@options.by_parts_option
 @options.json_option
-def command(log: Path, vehicle: Path | None, json_path: str | None) -> None:
+def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: str | None) -> None:
     """Say what a log holds: sensors, rates, gaps, held values; which methods can watch it, and why others cannot.
 
     Nothing is fitted: a method that seems to apply may still find, when it is fitted, that the log has too little of
@@ -26,11 +28,10 @@ def command(log: Path, vehicle: Path | None, json_path: str | None) -> None:
     """
     from dataclasses import asdict
 
-    from sensorfault.logs.summary import summarise
-
     work.check_outputs([json_path], [log, vehicle])
-    table = work.read_log(log, vehicle)
-    sensors = summarise(table)
+    summing, said = long.summed(log, vehicle) if long.by_parts(log, by_parts) else _whole(log, vehicle)
+    table, sensors = summing.first, summing.sensors
+    assert table is not None
     applies, lacking, without = _methods(table)
     answer = json_path != "-"
     show.table(f"Sensors of {table.name}", _COLUMNS, [_row(one) for one in sensors], answer, right=("gaps", "at"))
@@ -39,17 +40,27 @@ def command(log: Path, vehicle: Path | None, json_path: str | None) -> None:
     show.table("Methods", ("method", "applies"), rows, answer)
     told = {
         "log": table.name,
-        "duration_s": table.duration_s,
+        "duration_s": summing.end_s - float(table.time[0]),
         "tick_s": table.period_s,
-        "rows": len(table),
+        "rows": summing.rows,
         "epoch_s": table.epoch_s,
         "sensors": [asdict(sensor) for sensor in sensors],
-        "notes": list(table.notes),
-        "damage": list(table.damage),
+        "notes": list(said.notes),
+        "damage": list(said.damage),
         "applies": {name: {"without": without[name]} for name in applies},
         "does_not_apply": lacking,
     }
     show.write_json(json_path, told)
+
+
+def _whole(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
+    """The log as one part."""
+    from sensorfault.logs.joining import Said
+    from sensorfault.logs.summary import Summing
+
+    log, summing = work.read_log(path, vehicle), Summing()
+    summing.take(log)
+    return summing, Said(log.notes, log.damage)
 
 
 def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[str, str]]]:

@@ -1,4 +1,4 @@
-"""What `detect` does with a log that is too long to be read whole."""
+"""What verbs do with a log that is too long to be read whole."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -6,27 +6,44 @@ from typing import TYPE_CHECKING, Any
 from sensorfault.cli import show
 
 if TYPE_CHECKING:
+    from sensorfault.logs.joining import Said
+    from sensorfault.logs.summary import Summing
     from sensorfault.long_log import LongDetection
 
-LARGE = 10**9  # bytes; a larger file is read part by part unless told otherwise
+
+def by_parts(path: Path, said: bool | None) -> bool:
+    """Whether to read a log part by part: as the user said, else where it is long and can be."""
+    from sensorfault.logs.parts import is_long_log
+
+    return is_long_log(path) if said is None else said
 
 
-def by_parts(path: Path, vehicle: Path | None, said: bool | None, model: Path | None, report: Path | None) -> bool:
-    """Whether to read a log part by part: as the user said, else where it is large and can be.
+def judged_by_parts(path: Path, said: bool | None, model: Path | None, report: Path | None) -> bool:
+    """The same where it is to be judged.
 
     Raises:
         LogError: said so, without a model or with a report.
     """
     from sensorfault.logs import LogError
-    from sensorfault.logs.parts import has_parts
 
     if said and model is None:
         raise LogError(f"{path}: --by-parts needs a --model, which 'sensorfault fit' writes from a shorter log.")
     if said and report is not None:
         raise LogError(f"{report}: a report needs the whole log; leave out --by-parts, or --report.")
-    if said is not None or model is None or report is not None:
-        return bool(said)
-    return path.is_file() and path.stat().st_size > LARGE and has_parts(path, vehicle)
+    return model is not None and report is None and by_parts(path, said)
+
+
+def summed(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
+    """Read part by part and sum up what the log holds, and say what reading found."""
+    from sensorfault.logs.parts import read_parts
+    from sensorfault.logs.summary import Summing
+
+    summing = Summing()
+    with show.reading(path.name) as tell:
+        said = read_parts(path, summing.take, vehicle, tell)
+    assert summing.first is not None  # a file without a part is an error
+    _say(summing.first.name, summing.rows, summing.end_s, said.notes)
+    return summing, said
 
 
 def detect(path: Path, vehicle: Path | None, model_path: Path) -> "LongDetection":
@@ -36,9 +53,7 @@ def detect(path: Path, vehicle: Path | None, model_path: Path) -> "LongDetection
 
     with show.reading(path.name) as tell:
         found = detect_long(load(model_path), path, vehicle, tell)
-    show.say(f"{found.log.name}: {found.rows} rows to {show.clock(found.end_s)}, read part by part.")
-    for note in found.notes:
-        show.say(f"  {note}")
+    _say(found.log.name, found.rows, found.end_s, found.notes)
     return found
 
 
@@ -51,3 +66,9 @@ def answer(found: "LongDetection") -> dict[str, Any]:
         "notes": list(found.notes),
         "events": [event.as_dict() for event in found.events],
     }
+
+
+def _say(name: str, rows: int, end_s: float, notes: tuple[str, ...]) -> None:
+    show.say(f"{name}: {rows} rows to {show.clock(end_s)}, read part by part.")
+    for note in notes:
+        show.say(f"  {note}")

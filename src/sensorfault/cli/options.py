@@ -25,6 +25,13 @@ learn_option = click.option(
     type=click.FloatRange(0.05, 0.95),
     help="Without a model: share of the log to fit on, from its beginning.",
 )
+by_parts_option = click.option(
+    "--by-parts/--whole",
+    "by_parts",
+    default=None,
+    help="Read part by part, in memory that does not grow with the file. By itself where a file is larger than 1 GB "
+    "and its format allows it.",
+)
 seed_option = click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
 
 

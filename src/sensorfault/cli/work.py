@@ -1,5 +1,6 @@
 """What verbs do to logs and models, with progress: read, find or fit the model, detect."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,10 +51,26 @@ def read_truth(path: Path) -> "tuple[Fault, ...]":
         raise FaultError(f"{path}: not a text file; give the .truth.json that 'inject' wrote.") from None
 
 
-def read_log(path: Path, vehicle: Path | None) -> "Log":
-    """Read a log and say what reading found."""
-    from sensorfault.logs import read
+def _memory() -> int:
+    """Of this machine [bytes]."""
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
+
+def read_log(path: Path, vehicle: Path | None) -> "Log":
+    """Read a log and say what reading found.
+
+    Raises:
+        LogError: as `read`, or the log is larger than this machine's memory.
+    """
+    from sensorfault.logs import LogError, read
+    from sensorfault.logs.place import files_of
+
+    size, memory = sum(file.stat().st_size for file in files_of(path)), _memory()
+    if size > memory:
+        raise LogError(
+            f"{path}: {size / 1e9:.3g} GB cannot be read whole in {memory / 1e9:.3g} GB of memory; fit on a shorter "
+            "log, and give its --model to 'sensorfault detect --by-parts'."
+        )
     with show.reading(path.name) as tell:
         log = read(path, vehicle, tell=tell)
     show.say(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.")

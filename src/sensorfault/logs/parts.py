@@ -1,30 +1,32 @@
 """A long log part by part, in memory that does not grow with its file."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-import polars as pl
 
-from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.one_clock import put_on_one_clock
-from sensorfault.logs.place import find_vehicle, pair_files
-from sensorfault.logs.read import log_of
-from sensorfault.logs.readers.formats import format_of, read_tables
-from sensorfault.logs.readers.source import Ask, Source, Tables
-from sensorfault.logs.stream import read_stream
-from sensorfault.logs.table import Channel, Log, LogError, Sensor
+from sensorfault.logs.guess import guess
+from sensorfault.logs.joining import Joining, Said
+from sensorfault.logs.place import files_of, find_vehicle, pair_files
+from sensorfault.logs.read import GUESSED
+from sensorfault.logs.readers.beginning import is_long
+from sensorfault.logs.readers.formats import FORMATS, format_of, read_tables
+from sensorfault.logs.readers.source import Ask
+from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
 
-MARGIN_S = 5.0  # what comes so late in a part is told with the next: a slow topic's rows may still belong to it
-MOST_SAID = 20  # notes; each part has its own
+
+def file_of_parts(path: Path) -> Path | None:
+    """The file of a log that `read_parts` reads: itself, or the only one in a folder; None if there is none."""
+    files = files_of(path)
+    form = format_of(files[0]) if len(files) == 1 else None
+    return files[0] if form is not None and form.parts else None
 
 
-def has_parts(path: Path, vehicle: str | Path | VehicleFile | None = None) -> bool:
-    """Whether `read_parts` reads this file."""
-    form = format_of(path) if path.is_file() else None
-    return form is not None and form.parts and find_vehicle(path, vehicle) is not None
+def is_long_log(path: Path) -> bool:
+    """Whether a log is better read part by part, and can be."""
+    file = file_of_parts(path)
+    return file is not None and is_long(file)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
@@ -33,136 +35,29 @@ def read_parts(
     take: Callable[[Log], None],
     vehicle: str | Path | VehicleFile | None = None,
     tell: Callable[[float], None] = lambda share: None,
-) -> tuple[str, ...]:
+) -> Said:
     """Read one file and hand it over part by part: `take` hears consecutive pieces of what `read` would return.
 
     Each part is read with the one before it, so that what is held, or comes at another rate, is what it is in the whole
-    log. Two things are not: periods and a recording's clock are told from a part, not from all of it. For CSV, Parquet,
-    MCAP and ROS bags.
-
-    Returns:
-        What reading found that a person should know: the file's damage, then the first MOST_SAID other notes.
+    log. Two things are not: periods and a recording's clock are told from a part, not from all of it. Without a
+    vehicle.toml the columns are guessed, of a long file from its beginning.
 
     Raises:
-        LogError: a format that cannot be read in parts, no vehicle.toml, or whatever keeps a part from being used.
+        LogError: a format that cannot be read in parts, or whatever keeps a part from being used.
     """
-    form = format_of(path) if path.is_file() else None
-    if form is None or not form.parts:
-        what = "a folder or nothing" if form is None else f"{form.title}, which is read whole"
-        raise LogError(f"{path}: only CSV, Parquet, MCAP and ROS bags are read part by part, and this is {what}.")
-    known = find_vehicle(path, vehicle)
-    if known is None:
-        raise LogError(
-            f"{path}: a log that is read part by part needs a vehicle.toml beside it; let `sensorfault init` write one "
-            "from a shorter log of the same vehicle, or name one with --vehicle."
-        )
+    file = file_of_parts(path)
+    if file is None:
+        files = files_of(path)
+        form = format_of(files[0])
+        what = f"{len(files)} files" if len(files) > 1 or form is None else f"{form.title}, which is read whole"
+        able = ", ".join(one.title for one in FORMATS if one.parts)
+        raise LogError(f"{path}: this is {what}; what can be read part by part is one file of: {able}.")
+    described = find_vehicle(path, vehicle)
+    known = described or guess(path, tell)
     used = {sensor.file for sensor in known.sensors}
     entries = [entry for entry, _ in pair_files(known, path) if entry.name in used]
     names = frozenset(entry.table for entry in entries if entry.table is not None)
-    parts = _Parts(path, known, entries, take)
-    rest = read_tables(path, Ask(names or None, tell, parts.take))
+    parts = Joining(file, known, entries, take)
+    rest = read_tables(file, Ask(names or None, tell, parts.take))
     parts.take(rest, last=True)
-    return parts.said()
-
-
-@dataclass
-class _Parts:
-    """Joins each part to the one before it, makes a log of the two, and hands on what is new in it."""
-
-    path: Path
-    known: VehicleFile
-    entries: list[FileEntry]
-    hand_on: Callable[[Log], None]
-    before: Tables = field(default_factory=dict)
-    handed_s: float = -np.inf  # up to here
-    seen_s: float = -np.inf  # the last tick of the parts before
-    damage: dict[str, None] = field(default_factory=dict)
-    notes: dict[str, None] = field(default_factory=dict)
-    more: int = 0
-
-    def take(self, tables: Tables, last: bool = False) -> None:
-        both = _joined(self.before, tables)
-        self.damage |= dict.fromkeys(one.sentence(self.path) for source in tables.values() for one in source.damage)
-        log = self._log(both)
-        if log is None:
-            self.before = both
-            return
-        self.before = tables
-        end_s = float(log.time[-1])
-        begin_s = max(self.seen_s, float(log.time[0]))
-        if end_s <= self.seen_s and not last:
-            self._note(
-                f"{self.path.name}: its clock goes back by {self.seen_s - end_s:.3g} s; those rows were left out."
-            )
-            return
-        self.seen_s = max(end_s, self.seen_s)
-        until = np.inf if last else end_s - min(MARGIN_S, (end_s - begin_s) / 2)
-        new = (log.time > self.handed_s + log.period_s / 2) & (log.time <= until)
-        for note in log.notes:
-            self._note(note)
-        if new.any():
-            rows = slice(int(np.argmax(new)), len(new) - int(np.argmax(new[::-1])))
-            part = replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows], notes=())
-            self.handed_s = float(part.time[-1])
-            self.hand_on(part)
-
-    def said(self) -> tuple[str, ...]:
-        """All that a person should know."""
-        if not np.isfinite(self.seen_s):
-            raise LogError(f"{self.path}: one row is no log; name a file with at least two rows at different times.")
-        more = (f"{self.path.name}: {self.more} more notes on its parts.",) if self.more else ()
-        return (*self.damage, *self.notes, *more)
-
-    def _note(self, note: str) -> None:
-        if len(self.notes) < MOST_SAID or note in self.notes:
-            self.notes[note] = None
-        else:
-            self.more += 1
-
-    def _log(self, tables: Tables) -> Log | None:
-        """What is there of the described log, the sensors of absent tables without a value; None if nothing is."""
-        streams = []
-        there = []
-        for entry in self.entries:
-            source = tables.get(entry.table or "", None)
-            if source is not None and len(source.frame) > 1:
-                mine = [sensor for sensor in self.known.sensors if sensor.file == entry.name]
-                # No period is one that the log must tell; 0 is told by it as well, but allows for a silent part.
-                quiet = tuple(replace(sensor, period_s=sensor.period_s or 0.0) for sensor in mine)
-                streams.append(read_stream(source, entry, quiet))
-                there.append(entry.name)
-        if not streams:
-            return None
-        present = replace(self.known, sensors=tuple(s for s in self.known.sensors if s.file in there))
-        clock = put_on_one_clock(streams)
-        if self.known.zero_s is None:  # the first part's beginning is that of all
-            self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
-            present = replace(present, zero_s=self.known.zero_s)
-        notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
-        return _widened(log_of(present, streams, clock, notes, ()), self.known)
-
-
-def _joined(before: Tables, now: Tables) -> Tables:
-    """Each table's rows of two parts, one after the other."""
-
-    def both(one: Source | None, two: Source | None) -> Source:
-        if one is None or two is None:
-            only = one or two
-            assert only is not None
-            return only
-        return replace(one, frame=pl.concat([one.frame, two.frame], how="diagonal_relaxed"))
-
-    return {name: both(before.get(name), now.get(name)) for name in {**before, **now}}
-
-
-def _widened(log: Log, known: VehicleFile) -> Log:
-    """With all channels of the vehicle, those that are not there without a value."""
-    channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in known.sensors for c in s.channels)
-    if channels == log.channels:
-        return log
-    value, fresh = np.full((len(log), len(channels)), np.nan), np.zeros((len(log), len(channels)), bool)
-    at = [channels.index(channel) for channel in log.channels]
-    value[:, at], fresh[:, at] = log.value, log.fresh
-    have = {sensor.name: sensor for sensor in log.sensors}
-    sensors = tuple(have.get(s.name, Sensor(s.name, s.period_s or float("nan"), s.held)) for s in known.sensors)
-    return replace(log, value=value, fresh=fresh, channels=channels, sensors=sensors)
+    return parts.said(() if described else (GUESSED, *known.notes))

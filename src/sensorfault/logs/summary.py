@@ -1,12 +1,15 @@
-"""What a log holds, sensor by sensor: rates, gaps, held values."""
+"""What a log holds, sensor by sensor: rates, gaps, held values; of a long log part by part."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from sensorfault.logs.clock import GAP
-from sensorfault.logs.held import share_old
+from sensorfault.logs.held import any_of
 from sensorfault.logs.table import Log
+
+MOST_STEPS = 1 << 20  # the usual step of a sensor is that of so many from the beginning
 
 
 @dataclass(frozen=True)
@@ -14,6 +17,7 @@ class SensorSummary:
     """One sensor. Rate in new measurements a second; `held`: share of its values that only repeat the last one.
 
     `gaps`: times without a measurement that are longer than three usual periods; `longest_gap_s` begins at `gap_at_s`.
+    `missing`: share of the ticks of its time that are without any value of it.
     What is not known is None: of a sensor that measured less than twice, the rate.
     """
 
@@ -30,27 +34,90 @@ class SensorSummary:
 
 
 def summarise(log: Log) -> tuple[SensorSummary, ...]:
-    """Each sensor of a log. `missing`: share of the ticks of its time that are without any value of it."""
-    return tuple(_sensor(log, sensor.name) for sensor in log.sensors)
+    """Each sensor of a log."""
+    summing = Summing()
+    summing.take(log)
+    return summing.sensors
 
 
-def _sensor(log: Log, name: str) -> SensorSummary:
-    columns = list(log.of(name))
-    value, fresh = log.value[:, columns], log.fresh[:, columns]
-    at = log.time[fresh.any(axis=1)]
-    steps = np.diff(at)
-    period = float(np.median(steps)) if len(steps) else 0.0
-    long = steps > GAP * period
-    worst = int(np.argmax(steps)) if long.any() else None
-    return SensorSummary(
-        name=name,
-        channels=tuple(log.channels[i].name for i in columns),
-        units=tuple(log.channels[i].unit for i in columns),
-        measurements=len(at),
-        rate_hz=1 / period if period else None,
-        gaps=int(long.sum()),
-        longest_gap_s=None if worst is None else float(steps[worst]),
-        gap_at_s=None if worst is None else float(at[worst]),
-        held=share_old(value, fresh),
-        missing=float(np.mean(~np.isfinite(value).any(axis=1))) if len(value) else 1.0,
-    )
+class Summing:
+    """Sums up consecutive parts of one log. `first`: the first of them. `rows`, `end_s`: of all so far."""
+
+    def __init__(self) -> None:
+        self.first: Log | None = None
+        self.rows, self.end_s = 0, 0.0
+        self._sums: list[_Sum] = []
+
+    def take(self, part: Log) -> None:
+        """The next part."""
+        if self.first is None:
+            self.first = part
+            self._sums = [_Sum(sensor.name, part) for sensor in part.sensors]
+        for one in self._sums:
+            one.take(part)
+        self.rows += len(part)
+        self.end_s = float(part.time[-1]) if len(part) else self.end_s
+
+    @property
+    def sensors(self) -> tuple[SensorSummary, ...]:
+        """What is known of each sensor so far."""
+        return tuple(one.summary() for one in self._sums)
+
+
+class _Sum:
+    """One sensor, so far. A part may have its channels in any place, but has them all."""
+
+    def __init__(self, name: str, first: Log) -> None:
+        self._name = name
+        self._columns = list(first.of(name))
+        self._channels = [first.channels[i] for i in self._columns]
+        self._rows = self._present = self._measurements = self._gaps = 0
+        self._early: list[Float[np.ndarray, " k"]] = []  # steps before the usual one is known
+        self._usual_s: float | None = None
+        self._longest_s, self._longest_at_s = 0.0, np.nan
+        self._last_s = np.nan
+
+    def take(self, part: Log) -> None:
+        value, fresh = part.value[:, self._columns], part.fresh[:, self._columns]
+        self._rows += len(part)
+        self._present += int(any_of(np.isfinite(value)).sum())
+        at = part.time[any_of(fresh)]
+        if not len(at):
+            return
+        self._measurements += len(at)
+        begin = at if np.isnan(self._last_s) else np.concatenate([[self._last_s], at])
+        self._last_s = float(at[-1])
+        steps = np.diff(begin)
+        if len(steps) and steps.max() > self._longest_s:
+            worst = int(np.argmax(steps))
+            self._longest_s, self._longest_at_s = float(steps[worst]), float(begin[worst])
+        if self._usual_s is not None:
+            self._gaps += self._long(steps, self._usual_s)
+            return
+        self._early.append(steps)
+        if self._measurements > MOST_STEPS:
+            steps = np.concatenate(self._early)
+            self._usual_s = float(np.median(steps))
+            self._gaps, self._early = self._long(steps, self._usual_s), []
+
+    def summary(self) -> SensorSummary:
+        early = np.concatenate(self._early) if self._early else np.zeros(0)
+        usual_s = self._usual_s or (float(np.median(early)) if len(early) else 0.0)
+        gaps = self._gaps + self._long(early, usual_s)
+        present, rows = self._present, self._rows
+        return SensorSummary(
+            name=self._name,
+            channels=tuple(channel.name for channel in self._channels),
+            units=tuple(channel.unit for channel in self._channels),
+            measurements=self._measurements,
+            rate_hz=1 / usual_s if usual_s else None,
+            gaps=gaps,
+            longest_gap_s=self._longest_s if gaps else None,
+            gap_at_s=self._longest_at_s if gaps else None,
+            held=1 - self._measurements / present if present else 0.0,
+            missing=1 - present / rows if rows else 1.0,
+        )
+
+    @staticmethod
+    def _long(steps: Float[np.ndarray, " k"], usual_s: float) -> int:
+        return int((steps > GAP * usual_s).sum())

@@ -12,6 +12,7 @@ from sensorfault.logs.guess.naming import stem_of
 from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.stock import PX4, Fields, recognised
 from sensorfault.logs.guess.time import guess_time
+from sensorfault.logs.readers.beginning import is_long, read_beginning
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.table import LogError
@@ -22,7 +23,7 @@ _ROWS = 500_000  # a guess looks at so many rows from the beginning
 
 @dataclass(frozen=True)
 class Guess:
-    """One table: its clock and the sensors in it."""
+    """One table: its clock and the sensors in it. `times`: the file that its times stand in, where that is another."""
 
     path: Path
     columns: tuple[str, ...]
@@ -30,6 +31,7 @@ class Guess:
     clock: Clock
     sensors: list[SensorEntry]
     topic: str = ""  # that its whole file is
+    times: Path | None = None
 
     @property
     def called(self) -> str:
@@ -54,7 +56,7 @@ class Look:
 def look_at(file: Path, tell: Callable[[float], None]) -> Look:
     """What one file's tables are; of an autopilot's, those that are sensors."""
     try:
-        tables = read_tables(file, Ask(tell=tell))
+        tables = read_beginning(file, tell) if is_long(file) else read_tables(file, Ask(tell=tell))
     except LogError as error:
         return Look([], [error], [])
     said = [said for one in tables.values() for said in (*(broken.sentence(file) for broken in one.damage), *one.notes)]
@@ -127,7 +129,7 @@ def _guess_table(source: Source, table: str | None, fields: Fields | None) -> Gu
         why=why,
         left_out=tuple(left_out),
     )
-    return Guess(path, tuple(source.frame.columns), file, clock, sensors)
+    return Guess(path, tuple(source.frame.columns), file, clock, sensors, times=source.times)
 
 
 def _sensors(

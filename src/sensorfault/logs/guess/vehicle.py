@@ -56,17 +56,18 @@ def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> Ve
         for sensor in one.sensors
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
-    name = stem_of(files[0]) if len(files) == 1 else files[0].parent.stem
+    name = stem_of(files[0]) if len(files) == 1 else files[0].absolute().parent.stem
     return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
 
 
 def _refuse_several_drives(guesses: list[Guess]) -> None:
-    """Files with the same columns are one log only if their clocks say that they were written at one time."""
+    """Files with the same columns are one log only if their clocks say so: by the time of day, or by being one."""
     for i, one in enumerate(guesses):
         for other in guesses[:i]:
             start = max(one.clock.zero_s, other.clock.zero_s)
             end = min(guess.clock.zero_s + float(guess.clock.time[-1]) for guess in (one, other))
             together = one.clock.is_unix and other.clock.is_unix and start < end
+            together |= one.times is not None and one.times == other.times
             if one.columns == other.columns and one.path != other.path and not together:
                 raise LogError(
                     f"{one.path.parent}: {other.path.name} and {one.path.name} have the same columns and look like two "

@@ -65,6 +65,8 @@ def _part(path: Path, recording: Recording, ask: Ask) -> None:
                     recording.cannot_decode(f"message {count}")
                 if count % _TELL_EVERY == 0:
                     ask.tell(min(1.0, count / last))
+    except LogError:  # what takes the parts says so
+        raise
     except (sqlite3.Error, TypeError, ValueError, OverflowError) as error:
         recording.damage.append(
             Damage(f"the database {path.name} can be read no further ({error}), it ends", f"message {count}")

@@ -9,6 +9,7 @@ import polars as pl
 
 from sensorfault.logs.readers.dialect import MISSING, Dialect, is_number, sniff
 from sensorfault.logs.readers.source import Ask, Source
+from sensorfault.logs.readers.times_apart import times_beside, with_times
 from sensorfault.logs.table import LogError
 
 _PADDING = ' \t\r"'
@@ -21,24 +22,27 @@ _HOLDS: dict[pl.DataType, Holds] = {pl.String(): "text", pl.Int64(): "whole", pl
 
 
 def read_csv(path: Path) -> Source:
-    """One text table. Columns of a headerless file are called c1, c2, ...
+    """One text table, with its times where they lie beside it. Columns of a headerless file are called c1, c2, ...
 
     Raises:
         LogError: empty, not text, or not a table.
     """
     dialect = sniff(path)
     content, skip = _content(path, dialect)
-    return _source(path, dialect, _table(path, content, dialect, skip))
+    return with_times(_source(path, dialect, _table(path, content, dialect, skip)))
 
 
 def rest_of_csv(path: Path, ask: Ask) -> Source:
-    """The last lines of a text table, once all before them have been handed on to `ask.part`.
+    """The last lines of a text table, once all before them have been handed on to `ask.part`; the whole if times lie
+    beside it.
 
     Raises:
         LogError: as `read_csv`.
     """
     assert ask.part is not None
     dialect = sniff(path)
+    if times_beside(path, dialect.names) is not None:
+        return read_csv(path)
     line, size, before, holds = dialect.skip + 1, path.stat().st_size, None, None
     with path.open("rb") as file:
         for _ in range(dialect.skip):

@@ -32,6 +32,7 @@ from sensorfault.logs.readers.npy import called_by, read_npy
 from sensorfault.logs.readers.parquet import read_parquet, rest_of_parquet
 from sensorfault.logs.readers.rtklib import read_pos
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
+from sensorfault.logs.readers.times_apart import table_timed
 from sensorfault.logs.readers.ulog import read_ulog
 from sensorfault.logs.readers.utias import looks_utias, read_utias
 from sensorfault.logs.table import LogError
@@ -41,7 +42,13 @@ _ARCHIVES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip", ".7z", ".
 
 
 FORMATS = (
-    Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), in_parts(read_csv, rest_of_csv), parts=True),
+    Format(
+        "text table",
+        ("*.csv", "*.tsv", "*.txt", "*.dat"),
+        in_parts(read_csv, rest_of_csv),
+        leader=table_timed,
+        parts=True,
+    ),
     Format("libRSF measurements", ("*.txt",), remembering(read_librsf), looks_librsf),
     Format("smartLoc measurements", ("*.csv",), remembering(read_smartloc), looks_smartloc),
     Format("UTIAS measurements", ("*.dat",), one_table(read_utias), looks_utias),
@@ -49,7 +56,7 @@ FORMATS = (
     Format("RTKLIB solution", ("*.pos",), one_table(read_pos)),
     Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by),
     Format("MATLAB", ("*.mat",), remembering(read_mat)),
-    Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog)),
+    Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog), parts=True),
     Format("ROS 1 bag", ("*.bag",), remembering(read_bag1), parts=True),
     Format("ROS 2 bag", ("*.db3",), remembering(read_bag2), leader=first_part, parts=True),
     Format("MCAP", ("*.mcap",), remembering(read_mcap), leader=first_part, parts=True),

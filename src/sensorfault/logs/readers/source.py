@@ -53,6 +53,7 @@ class Source:
     `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
+    `times`: the file that its time column stands in, where that is another.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
 
@@ -66,6 +67,7 @@ class Source:
     sensors: tuple[SensorEntry, ...] = ()
     units: Mapping[str, str] = field(default_factory=dict)
     table: str = ""
+    times: Path | None = None
 
     @property
     def name(self) -> str:
@@ -118,3 +120,18 @@ def told(tables: Tables, notes: Iterable[str], damage: Iterable[Damage] = ()) ->
     return {
         name: replace(one, notes=(*one.notes, *said), damage=(*one.damage, *broken)) for name, one in tables.items()
     }
+
+
+def joined(before: Tables, now: Tables) -> Tables:
+    """Each table's rows of two parts of a file, one after the other."""
+
+    def both(one: Source | None, two: Source | None) -> Source:
+        if one is None or two is None:
+            only = one or two
+            assert only is not None
+            return only
+        frame = pl.concat([one.frame, two.frame], how="diagonal_relaxed")
+        notes, damage = dict.fromkeys((*one.notes, *two.notes)), dict.fromkeys((*one.damage, *two.damage))
+        return replace(one, frame=frame, notes=tuple(notes), damage=tuple(damage))
+
+    return {name: both(before.get(name), now.get(name)) for name in {**before, **now}}

@@ -12,7 +12,7 @@ import polars as pl
 from sensorfault.logs.readers.fields import Fields
 from sensorfault.logs.readers.protobuf_fields import ProtobufFields
 from sensorfault.logs.readers.ros_types import si_unit_of
-from sensorfault.logs.readers.source import PART, Ask, Source, Tables
+from sensorfault.logs.readers.source import PART, Ask, Source, Tables, told
 
 RECEIVED = "received_time"
 _STAMPS = ("header.stamp", "timestamp")  # ROS's, Foxglove's
@@ -47,7 +47,7 @@ class Topics:
 
     def _hand_on(self, part: Callable[[Tables], None]) -> None:
         """All that has been gathered, which is then forgotten."""
-        part(self.tables()[0])
+        part(told(*self.tables()))
         for of_it in self._topics.values():
             of_it.clear()
         self._numbers, self.handed_on = 0, True

@@ -1,0 +1,120 @@
+"""Parts of a file, one after the other -> consecutive pieces of the log that the file as a whole would be."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from sensorfault.logs.entries import FileEntry
+from sensorfault.logs.one_clock import put_on_one_clock
+from sensorfault.logs.read import log_of
+from sensorfault.logs.readers.source import Tables, joined
+from sensorfault.logs.stream import read_stream
+from sensorfault.logs.table import Channel, Log, LogError, Sensor
+from sensorfault.logs.vehicle import VehicleFile
+
+MARGIN_S = 5.0  # what comes so late in a part is told with the next: a slow topic's rows may still belong to it
+MOST_SAID = 20  # notes; each part has its own
+
+
+@dataclass(frozen=True)
+class Said:
+    """What reading part by part found that a person should know.
+
+    `damage`: where the file could not be read. `notes`: that, then the first MOST_SAID other notes.
+    """
+
+    notes: tuple[str, ...]
+    damage: tuple[str, ...]
+
+
+@dataclass
+class Joining:
+    """Joins each part to the one before it, makes a log of the two, and hands on what is new in it."""
+
+    path: Path
+    known: VehicleFile
+    entries: list[FileEntry]
+    hand_on: Callable[[Log], None]
+    before: Tables = field(default_factory=dict)
+    handed_s: float = -np.inf  # up to here
+    seen_s: float = -np.inf  # the last tick of the parts before
+    damage: dict[str, None] = field(default_factory=dict)
+    notes: dict[str, None] = field(default_factory=dict)
+    more: int = 0
+
+    def take(self, tables: Tables, last: bool = False) -> None:
+        """The tables of the next part."""
+        both = joined(self.before, tables)
+        self.damage |= dict.fromkeys(one.sentence(self.path) for source in tables.values() for one in source.damage)
+        log = self._log(both)
+        if log is None:
+            self.before = both
+            return
+        self.before = tables
+        end_s = float(log.time[-1])
+        begin_s = max(self.seen_s, float(log.time[0]))
+        if end_s <= self.seen_s and not last:
+            self._note(
+                f"{self.path.name}: its clock goes back by {self.seen_s - end_s:.3g} s; those rows were left out."
+            )
+            return
+        self.seen_s = max(end_s, self.seen_s)
+        until = np.inf if last else end_s - min(MARGIN_S, (end_s - begin_s) / 2)
+        new = (log.time > self.handed_s + log.period_s / 2) & (log.time <= until)
+        for note in log.notes:
+            self._note(note)
+        if new.any():
+            rows = slice(int(np.argmax(new)), len(new) - int(np.argmax(new[::-1])))
+            part = replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows], notes=())
+            self.handed_s = float(part.time[-1])
+            self.hand_on(part)
+
+    def said(self, first: tuple[str, ...]) -> Said:
+        """All that a person should know, `first` among it."""
+        if not np.isfinite(self.seen_s):
+            raise LogError(f"{self.path}: one row is no log; name a file with at least two rows at different times.")
+        more = (f"{self.path.name}: {self.more} more notes on its parts.",) if self.more else ()
+        return Said(tuple(dict.fromkeys((*self.damage, *first, *self.notes, *more))), tuple(self.damage))
+
+    def _note(self, note: str) -> None:
+        if len(self.notes) < MOST_SAID or note in self.notes:
+            self.notes[note] = None
+        else:
+            self.more += 1
+
+    def _log(self, tables: Tables) -> Log | None:
+        """What is there of the described log, the sensors of absent tables without a value; None if nothing is."""
+        streams = []
+        there = []
+        for entry in self.entries:
+            source = tables.get(entry.table or "", None)
+            if source is not None and len(source.frame) > 1:
+                mine = [sensor for sensor in self.known.sensors if sensor.file == entry.name]
+                # No period is one that the log must tell; 0 is told by it as well, but allows for a silent part.
+                quiet = tuple(replace(sensor, period_s=sensor.period_s or 0.0) for sensor in mine)
+                streams.append(read_stream(source, entry, quiet))
+                there.append(entry.name)
+        if not streams:
+            return None
+        present = replace(self.known, sensors=tuple(s for s in self.known.sensors if s.file in there))
+        clock = put_on_one_clock(streams)
+        if self.known.zero_s is None:  # the first part's beginning is that of all
+            self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
+            present = replace(present, zero_s=self.known.zero_s)
+        notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
+        return _widened(log_of(present, streams, clock, notes, ()), self.known)
+
+
+def _widened(log: Log, known: VehicleFile) -> Log:
+    """With all channels of the vehicle, those that are not there without a value."""
+    channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in known.sensors for c in s.channels)
+    if channels == log.channels:
+        return log
+    value, fresh = np.full((len(log), len(channels)), np.nan), np.zeros((len(log), len(channels)), bool)
+    at = [channels.index(channel) for channel in log.channels]
+    value[:, at], fresh[:, at] = log.value, log.fresh
+    have = {sensor.name: sensor for sensor in log.sensors}
+    sensors = tuple(have.get(s.name, Sensor(s.name, s.period_s or float("nan"), s.held)) for s in known.sensors)
+    return replace(log, value=value, fresh=fresh, channels=channels, sensors=sensors)

@@ -1,0 +1,112 @@
+"""pyulog, made to say where a file is broken, and to hand on what it has read before it has read all."""
+
+import struct
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from pyulog import ULog
+
+from sensorfault.logs.readers.source import PART
+from sensorfault.logs.readers.telling import open_telling
+
+_HEADER = struct.Struct("<HB")
+
+
+class Loaded(ULog):  # type: ignore[misc]
+    """What pyulog reads of a file. `take`: hears the topics read so far whenever they are PART numbers.
+
+    `data_list`: the topics, or what has come of them since `take` heard. `broken_at`: how far into the file its first
+    broken message was noticed. `left`: bytes of a header that the file ended in; None if it ended behind a header.
+    `lost_s`: how often, and for how long together [s], the autopilot could not write.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        names: list[str] | None,
+        tell: Callable[[float], None],
+        take: Callable[[list[Any]], None] | None,
+    ) -> None:
+        self.broken_at: int | None = None
+        self.left: int | None = None
+        self.lost, self.lost_s = 0, 0.0
+        self.due = False
+        self._tell, self._take = tell, take
+        super().__init__(None)
+        self._MessageHeader = partial(_Header, self)
+        self._subscriptions = _Subscriptions(self._data_list)
+        with open_telling(path, self._heard) as self._opened:
+            self._load_file(self._opened, names)
+        self._count_lost()
+
+    def hand_on(self) -> None:
+        """All topics that have been gathered, which are then forgotten, with whatever else grows with the file."""
+        self.due = False
+        topics = [*self._data_list, *(ULog.Data(one) for one in self._subscriptions.values() if one.buffer)]
+        self._data_list.clear()
+        for one in self._subscriptions.values():
+            one.buffer = bytearray()
+        for text in (self._logged_messages, self._logged_messages_tagged, self._msg_info_multiple_dict):
+            text.clear()
+        self._changed_parameters.clear()
+        self._count_lost()
+        assert self._take is not None
+        self._take(topics)
+
+    def _heard(self, share: float) -> None:
+        """Called between messages, once for each buffer that is read from the file."""
+        if self._take is not None:
+            gathered = sum(
+                len(one.buffer) // max(1, one.dtype.itemsize) * len(one.field_data)
+                for one in self._subscriptions.values()
+            )
+            self.due = gathered + sum(len(field) for one in self._data_list for field in one.data.values()) >= PART
+        self._tell(share)
+
+    def _count_lost(self) -> None:
+        self.lost += len(self._dropouts)
+        self.lost_s += sum(one.duration for one in self._dropouts) / 1e3
+        self._dropouts.clear()
+
+    @property
+    def _file_corrupt(self) -> bool:
+        return self.broken_at is not None
+
+    @_file_corrupt.setter
+    def _file_corrupt(self, corrupt: bool) -> None:
+        if corrupt and self.broken_at is None:
+            self.broken_at = self._opened.tell()
+
+
+class _Subscriptions(dict[int, Any]):
+    """By number. One that another replaces had data, which pyulog would forget."""
+
+    def __init__(self, topics: list[Any]) -> None:
+        super().__init__()
+        self._topics = topics
+
+    def __setitem__(self, number: int, one: Any) -> None:
+        before = self.get(number)
+        if before is not None and before.buffer:
+            self._topics.append(ULog.Data(before))
+        super().__setitem__(number, one)
+
+
+class _Header:
+    """Size and kind of a message."""
+
+    __slots__ = ("log", "msg_size", "msg_type")
+
+    def __init__(self, log: Loaded) -> None:
+        self.log, self.msg_size, self.msg_type = log, 0, 0
+
+    def initialize(self, data: bytes) -> None:
+        if self.log.due:
+            self.log.hand_on()
+        try:
+            self.msg_size, self.msg_type = _HEADER.unpack(data)
+        except struct.error:
+            self.log.left = len(data)
+            raise
