@@ -1,23 +1,29 @@
 """An autopilot's log read part by part is the log read whole, and so is what is said of it."""
 
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from logs import written_ulog
+from logs import written_ardupilot, written_dataflash, written_ulog
+from logs.small_parts import small_parts
 from sensorfault.logs import Log, guess, read
 from sensorfault.logs.parts import read_parts
-from sensorfault.logs.readers import telling, ulog_load
+
+CONTENT = {
+    ".ulg": written_ulog.flight(20.0),
+    ".bin": written_dataflash.flight(2, 20.0),
+    ".log": written_ardupilot.text(20.0).encode(),
+    ".tlog": written_ardupilot.tlog(60.0),
+}
 
 
 @pytest.fixture(autouse=True)
-def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(telling, "_BUFFER_BYTES", 1000)
-    monkeypatch.setattr(ulog_load, "PART", 1000)
-
-
-CONTENT = {".ulg": written_ulog.flight(20.0)}
+def in_small_parts() -> Iterator[None]:
+    with small_parts():
+        yield
 
 
 def put(folder: Path, suffix: str, content: bytes) -> Path:
@@ -49,11 +55,17 @@ def test_parts_are_the_whole(tmp_path: Path, suffix: str) -> None:
 def test_damage_is_said_at_its_place_in_the_file(tmp_path: Path, suffix: str) -> None:
     content = CONTENT[suffix]
     at = 3 * len(content) // 4
-    said = assert_whole(put(tmp_path, suffix, content[:at] + b"\x00" * 200 + content[at + 200 :]))
-    print(said)
+    said = assert_whole(put(tmp_path, suffix, content[:at] + b"\n" + b"\x00" * 58 + b"\n" + content[at + 60 :]))
+    place = content[:at].count(b"\n") + 1 if suffix == ".log" else at
+    (where,) = (re.search(r"(?:line|byte) (\d+)", note) for note in said if "the others were read" in note)
+    assert where is not None
+    assert place - 200 < int(where[1]) < place + 2000
 
 
 @pytest.mark.parametrize("cut", [1, 2, 3, 17, 800])
 @pytest.mark.parametrize("suffix", CONTENT)
 def test_a_file_that_breaks_off_is_read_so_far(tmp_path: Path, suffix: str, cut: int) -> None:
-    assert_whole(put(tmp_path, suffix, CONTENT[suffix][:-cut]))
+    assert any(
+        "breaks off" in note or "no whole message" in note
+        for note in assert_whole(put(tmp_path, suffix, CONTENT[suffix][:-cut]))
+    )
