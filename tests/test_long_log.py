@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import fitted
+from sensorfault.detection import Detection
 from sensorfault.detector import detect
 from sensorfault.logs import read, write
 from sensorfault.logs.readers import csv
@@ -17,7 +19,8 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.M
     write(fitted.lying().log, path)
     whole = detect(fitted.model(), read(path))
     heard: list[float] = []
-    told = detect_long(fitted.model(), path, tell=heard.append)
+    seen: list[tuple[Detection, float]] = []
+    told = detect_long(fitted.model(), path, tell=heard.append, see=lambda part, share: seen.append((part, share)))
     assert len(heard) > 5
     assert told.rows == len(whole.log)
     assert told.end_s == pytest.approx(whole.log.time[-1])
@@ -27,3 +30,9 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.M
         assert mine.start_s == pytest.approx(theirs.start_s, abs=1e-6)
         assert mine.end_s == pytest.approx(theirs.end_s, abs=1e-6)
         assert mine.peak_score == pytest.approx(theirs.peak_score)
+    assert sum(share for _, share in seen) == pytest.approx(1)
+    assert max(share for _, share in seen) < 0.5
+    assert seen[-1][0].events == told.events
+    for name in ("channel", "sensor", "sample", "motion", "repaired"):
+        parts = np.concatenate([getattr(part, name) for part, _ in seen])
+        np.testing.assert_allclose(parts, getattr(whole, name), atol=1e-9)

@@ -11,7 +11,15 @@ from pyubx2 import GET, UBXMessage
 from scipy.io import savemat
 
 from fuzz import texts
-from logs import written_ardupilot, written_bus, written_dataflash, written_ros, written_ulog
+from logs import (
+    written_ardupilot,
+    written_bus,
+    written_dataflash,
+    written_foxglove,
+    written_mat73,
+    written_ros,
+    written_ulog,
+)
 
 TIME = np.arange(60) / 10
 COLUMNS = {"t": TIME, "ax": np.sin(TIME), "ay": np.cos(TIME), "az": 9.8 + 0.1 * np.sin(3 * TIME)}
@@ -119,6 +127,10 @@ SMALL: dict[str, Callable[[Path], Path]] = {
     "Parquet": _parquet,
     "NumPy arrays": _npy,
     "MATLAB": _mat,
+    "MATLAB, version 7.3": lambda folder: written_mat73.save(folder / "flight.mat", {"flight_data": COLUMNS}),
+    "MATLAB, version 7.3, not packed": lambda folder: written_mat73.save(
+        folder / "flight.mat", {"flight_data": COLUMNS}, packed=False
+    ),
     "RTKLIB solution": _text("rover.pos", texts.pos),
     "libRSF measurements": _text("car_Input.txt", texts.librsf),
     "smartLoc measurements": _text("RXM-RAWX.csv", texts.smartloc),
@@ -132,6 +144,7 @@ SMALL: dict[str, Callable[[Path], Path]] = {
     "ROS 2 bag": lambda folder: written_ros.bag2(folder / "drive", seconds=0.5),
     "MCAP": lambda folder: written_ros.bag2(folder / "drive", mcap=True, seconds=0.5),
     "MCAP, of JSON": lambda folder: written_ros.mcap(folder / "drive.mcap"),
+    "MCAP, of protocol buffers": lambda folder: written_foxglove.mcap(folder / "drive.mcap", count=20),
     "MDF": lambda folder: written_bus.mdf(folder / "drive.mf4"),
     "CAN recording": lambda folder: written_bus.blf(folder / "drive.blf"),
     "CAN recording, as text": lambda folder: written_bus.asc(folder / "drive.asc"),

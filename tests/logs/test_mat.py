@@ -1,12 +1,17 @@
 """MATLAB structures as a log, and each bad one as one sentence."""
 
+import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
+from polars.testing import assert_frame_equal
 from scipy.io import savemat
 
+from logs import written_mat73
 from sensorfault.logs import LogError, VehicleFile, guess, read
+from sensorfault.logs.readers.formats import read_tables
 
 RANDOM = np.random.default_rng(4)
 TIME = 0.02 * np.arange(400)
@@ -66,12 +71,56 @@ def test_a_file_that_breaks_off(tmp_path: Path) -> None:
         read(path)
 
 
-def test_the_newest_version_is_named(tmp_path: Path) -> None:
-    path = tmp_path / "flight.mat"
-    header = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM"
-    path.write_bytes(header + bytes(600))
-    with pytest.raises(LogError, match=r"version 7\.3; save it again"):
+EVERYTHING = {
+    "data": {**{name: one[:, None] for name, one in FLIGHT.items()}, "on": FLIGHT["ax"][:, None] > 0, "who": "thor"},
+    "alone": FLIGHT["ay"][:, None].astype(np.float32),
+    "counted": np.arange(400, dtype=np.int32)[None, :],
+    "nothing": np.empty((0, 0)),
+    "picture": np.ones((30, 40)),
+    "rate": np.array([[50.0]]),
+}
+
+
+@pytest.mark.parametrize("packed", [True, False])
+def test_version_7_3_holds_the_same_tables(tmp_path: Path, packed: bool) -> None:
+    savemat(tmp_path / "old.mat", EVERYTHING)
+    old = read_tables(tmp_path / "old.mat")
+    new = read_tables(written_mat73.save(tmp_path / "new.mat", EVERYTHING, packed))
+    assert new.keys() == old.keys() == {"data", "variables"}
+    for name in old:
+        assert_frame_equal(new[name].frame, old[name].frame, check_column_order=False)
+
+
+def test_damage_to_one_vector_of_version_7_3_costs_that_one(tmp_path: Path) -> None:
+    path = written_mat73.save(tmp_path / "flight.mat", {"data": {name: one[:, None] for name, one in FLIGHT.items()}})
+    with h5py.File(path) as file:
+        at, size = file["data/ay"].id.get_chunk_info(0)[2:]
+    content = bytearray(path.read_bytes())
+    content[512 + at + size // 2] ^= 255
+    path.write_bytes(content)
+    log = read(path)
+    assert [channel.path for channel in log.channels] == ["accelerometer.x", "accelerometer.z"]
+    (said,) = log.damage
+    assert said.startswith("flight.mat: a vector cannot be read (")
+    assert said.endswith("at 'data.ay'; the others were read.")
+    path.write_bytes(content[:3000])
+    with pytest.raises(LogError, match=r"not a whole MATLAB file \(.*truncated"):
         read(path)
+
+
+def test_h5py_is_named_where_it_is_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written_mat73.save(tmp_path / "flight.mat", {"data": FLIGHT})
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(LogError, match=r"run `pip install 'sensorfault\[matlab\]'`"):
+        read(path)
+
+
+def test_a_link_to_another_file_is_not_followed(tmp_path: Path) -> None:
+    written_mat73.save(tmp_path / "other.mat", FLIGHT)
+    path = written_mat73.save(tmp_path / "flight.mat", {"data": FLIGHT})
+    with h5py.File(path, "r+") as file:
+        file["elsewhere"] = h5py.ExternalLink("other.mat", "/ax")
+    assert read_tables(path).keys() == {"data"}
 
 
 @pytest.mark.parametrize("content", [{"name": "thor"}, {"a": 1.0}, {"data": {"x": np.zeros((3, 3))}}])

@@ -1,5 +1,6 @@
 """A log read part by part is the log read whole."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,11 +8,12 @@ import numpy as np
 import pytest
 
 import fitted
+from logs import written_bus
 from logs.written_ros import bag1, bag2
 from sensorfault.logs import Log, LogError, guess, read, write
 from sensorfault.logs.parts import is_long_log, read_parts
 from sensorfault.logs.read import GUESSED
-from sensorfault.logs.readers import beginning, csv, parquet, topics
+from sensorfault.logs.readers import beginning, can_bus, csv, parquet, topics
 from sensorfault.logs.readers.formats import read_tables
 
 
@@ -66,6 +68,18 @@ def test_topics_of_several_rates(tmp_path: Path, way: str) -> None:
     path = recorded(tmp_path, way, 8.0)
     path.with_suffix(".vehicle.toml").write_text(guess(path).to_toml())
     assert_whole(path)
+
+
+@pytest.mark.parametrize("write", [written_bus.blf, written_bus.asc])
+def test_a_can_recording_with_frames_that_cannot_be_decoded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, write: Callable[..., Path]
+) -> None:
+    monkeypatch.setattr(can_bus, "PART", 300)
+    path = write(tmp_path / ("drive.blf" if write is written_bus.blf else "drive.asc"), 300)
+    path.with_suffix(".vehicle.toml").write_text(guess(path).to_toml())
+    assert_whole(path)
+    said = read_parts(path, lambda part: None).notes
+    assert "300 frames of unknown messages left out, of 0x300" in " ".join(said)
 
 
 def test_a_topic_that_falls_silent_is_there_without_values(tmp_path: Path) -> None:

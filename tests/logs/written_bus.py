@@ -34,9 +34,9 @@ def mdf(path: Path) -> Path:
     return path
 
 
-def frames() -> Iterator[can.Message]:
+def frames(count: int = ROWS) -> Iterator[can.Message]:
     database = cantools.database.load_string(DATABASE, "dbc")
-    for k in range(ROWS):
+    for k in range(count):
         said = (
             ("Wheels", 0.0, {"FrontLeft": 36 + 0.1 * k, "FrontRight": 36 - 0.1 * k}),
             ("Motion", 0.004, {"YawRate": 0.5 * (k % 7), "Gear": 3}),
@@ -47,18 +47,18 @@ def frames() -> Iterator[can.Message]:
         yield can.Message(timestamp=START_S + k / 50 + 0.006, arbitration_id=0x300, data=bytes(8), is_extended_id=False)
 
 
-def blf(path: Path) -> Path:
+def blf(path: Path, count: int = ROWS) -> Path:
     _database(path)
     with can.BLFWriter(path) as writer:
-        for frame in frames():
+        for frame in frames(count):
             writer.on_message_received(frame)
     return path
 
 
-def asc(path: Path) -> Path:
+def asc(path: Path, count: int = ROWS) -> Path:
     _database(path)
     with can.ASCWriter(path) as writer:
-        for frame in frames():
+        for frame in frames(count):
             writer.on_message_received(frame)
     return path
 

@@ -53,6 +53,16 @@ def test_an_unperturbed_orbit_obeys_newton(eccentricity: float) -> None:
     assert free @ free == pytest.approx(3.986005e14 * (2 / r - 1 / 5153.7**2), rel=1e-9)
 
 
+def test_a_geostationary_orbit_told_by_a_tilted_equator_stands_still() -> None:
+    mu, rate, tilt = 3.986004418e14, 7.292115e-5, np.deg2rad(-5)
+    radius = (mu / rate**2) ** (1 / 3)  # that of a sidereal day
+    # the tilted equator rises by 5 degrees towards the true one's y, so that an orbit on the true one falls by as much
+    told = {"mu": mu, "earth_rate": rate, "sqrt_a": radius**0.5, "tilt": tilt, "inclination": tilt, "anomaly": 1.9}
+    times = np.array([0.0, 3600.0, 43200.0])
+    place = radius * np.array([np.cos(1.9), np.sin(1.9), 0.0])
+    np.testing.assert_allclose(kepler.position(one(**told), times), np.tile(place, (3, 1)), atol=1e-3)
+
+
 def test_keplers_equation_is_solved() -> None:
     mean, eccentricity = np.meshgrid(np.linspace(-7, 7, 101), [0.0, 0.01, 0.1, 0.3])
     found = kepler.eccentric_anomaly(mean, eccentricity)

@@ -3,9 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sensorfault.cli import show
+from sensorfault.cli import show, work
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sensorfault.detection import Detection
+    from sensorfault.faults.fault import Fault
     from sensorfault.logs.joining import Said
     from sensorfault.logs.summary import Summing
     from sensorfault.long_log import LongDetection
@@ -18,19 +22,17 @@ def by_parts(path: Path, said: bool | None) -> bool:
     return is_long_log(path) if said is None else said
 
 
-def judged_by_parts(path: Path, said: bool | None, model: Path | None, report: Path | None) -> bool:
+def judged_by_parts(path: Path, said: bool | None, model: Path | None) -> bool:
     """The same where it is to be judged.
 
     Raises:
-        LogError: said so, without a model or with a report.
+        LogError: said so, without a model.
     """
     from sensorfault.logs import LogError
 
     if said and model is None:
         raise LogError(f"{path}: --by-parts needs a --model, which 'sensorfault fit' writes from a shorter log.")
-    if said and report is not None:
-        raise LogError(f"{report}: a report needs the whole log; leave out --by-parts, or --report.")
-    return model is not None and report is None and by_parts(path, said)
+    return model is not None and by_parts(path, said)
 
 
 def summed(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
@@ -46,14 +48,28 @@ def summed(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
     return summing, said
 
 
-def detect(path: Path, vehicle: Path | None, model_path: Path) -> "LongDetection":
-    """Read and judge part by part, and say what reading found."""
+def detect(
+    path: Path, vehicle: Path | None, model_path: Path, report: Path | None = None, truth: "Sequence[Fault]" = ()
+) -> "LongDetection":
+    """Read and judge part by part, say what reading found, and draw the `report`."""
+    from sensorfault.evaluation.page import write_sketch
+    from sensorfault.evaluation.page_sketch import Sketch
     from sensorfault.long_log import detect_long
     from sensorfault.store import load
 
+    model, sketches = load(model_path), list[Sketch]()
+
+    def see(part: "Detection", share: float) -> None:
+        if not sketches:
+            sketches.append(Sketch(part))
+        sketches[0].take(part, share)
+
     with show.reading(path.name) as tell:
-        found = detect_long(load(model_path), path, vehicle, tell)
+        found = detect_long(model, path, vehicle, tell, see if report is not None else None)
     _say(found.log.name, found.rows, found.end_s, found.notes)
+    if report is not None:
+        write_sketch(sketches[0], report, truth, summary=work.limits(model), notes=found.notes)
+        show.say(f"Wrote {report}.")
     return found
 
 

@@ -99,11 +99,7 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
         from sensorfault.store import load
 
         model = load(model_path)
-        told = (
-            f"Limits: fitted by {model.method} on {model.summary.get('training_log', 'another log')}.",
-            *rate(model),
-        )
-        return Ready(model, log, None, (*told, *not_watched(model)))
+        return Ready(model, log, None, limits(model))
     from sensorfault.methods.fit import fit
 
     start = float(log.time[0])
@@ -112,7 +108,7 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
         task = bar.add_task(f"fitting {method}", total=None)
         model = fit(log.between(end_s=cut), method, held_out=0.0, seed=seed)
         bar.update(task, total=1, completed=1)
-    told = (
+    told: tuple[str, ...] = (
         f"No model was given: {method} was fitted on the log's own beginning, {show.clock(start)} to "
         f"{show.clock(cut)}, taken as healthy; only the rest was judged.",
         "A fault in that beginning is learned, not found, and the false-alarm rate is not known: "
@@ -122,6 +118,12 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
     for sentence in told:
         show.say(sentence)
     return Ready(model, log.between(cut), (start, cut), told)
+
+
+def limits(model: "Model") -> tuple[str, ...]:
+    """Where a stored model's limits come from, and what they leave out."""
+    fitted = f"Limits: fitted by {model.method} on {model.summary.get('training_log', 'another log')}."
+    return (fitted, *rate(model), *not_watched(model))
 
 
 def rate(model: "Model") -> tuple[str, ...]:

@@ -35,7 +35,7 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
         ),
         ("wheels", r"(^|_)wheel_?speeds?_(?P<axis>[a-z]+(_[a-z]+)*)$"),
         ("airspeed", r"(^|_)(?P<axis>([a-z]+_)?air_?speed(_[a-z]+)?|ias|tas)$"),
-        ("velocity", rf"(^|_)(v|vel|velocity|twist_linear|wind_?speed)_?{_AXIS}$"),
+        ("velocity", rf"(^|_)(v|vel|(linear_)?velocity|twist_linear|wind_?speed)_?{_AXIS}$"),
         ("speed", r"(^|_)(?P<axis>speed|sog|spd|ground_?speed|vel|velocity|wheel_?speed)$"),
         ("steering", r"(^|_)(steer(ing)?|road_?wheel)(_?wheel)?_?(?P<axis>angle)$"),
         ("position", r"(^|_)(?P<axis>lat|latitude|lon|lng|longitude)$"),

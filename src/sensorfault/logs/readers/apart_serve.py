@@ -8,7 +8,7 @@ from pathlib import Path
 
 from sensorfault.logs.readers.apart import reason
 
-_LIBRARIES = {"mat_load": "scipy.io", "mdf_load": "asammdf"}
+_LIBRARIES = {"mat_load": "scipy.io", "mat73_load": "h5py", "mdf_load": "asammdf"}
 _TIMES, _MOST_BYTES = 30, 1 << 28  # a damaged size must not fill the memory: times the file's, and so much more
 
 

@@ -1,22 +1,20 @@
 """Recordings of a CAN bus (`.blf`, `.asc`), by python-can, decoded by the `.dbc` files beside them, by cantools."""
 
-from collections import Counter, defaultdict
+from collections import Counter
+from collections.abc import Callable, Iterator
+from io import TextIOWrapper
 from pathlib import Path
-from typing import IO, Any
-
-import numpy as np
-import polars as pl
+from typing import Any
 
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.apart import reason
+from sensorfault.logs.readers.can_rows import Rows
 from sensorfault.logs.readers.extra import extra
+from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.quiet import quiet
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, told
+from sensorfault.logs.readers.telling import TellingFile, open_telling
 from sensorfault.logs.table import LogError
-from sensorfault.logs.units import known, spelled
-
-TIME = "time"
-Rows = dict[str, list[dict[str, float]]]
 
 
 def read_can(path: Path, ask: Ask) -> Tables:
@@ -25,79 +23,96 @@ def read_can(path: Path, ask: Ask) -> Tables:
     Raises:
         LogError: no recording, no database beside it, or nothing in it that they describe; or no library for it.
     """
-    with extra(path, "bus"), quiet():
+    handing = Handing(ask)
+    with extra(path, "bus"), quiet() as aloud:
         import can  # lazily: only this format needs them
         import cantools
 
-        database = cantools.database.Database(strict=False)
         beside = sorted(path.parent.glob("*.dbc"))
-        if not beside:
-            raise LogError(f"{path}: no .dbc file lies beside it; put one there that says what its messages mean.")
-        for file in beside:
-            try:
-                database.add_dbc_file(str(file))
-            except Exception as error:
-                raise LogError(f"{file}: this database cannot be read ({reason(error)}); export it again.") from None
-        rows, unknown, damage = _messages(path, can, database, ask)
-    tables = {name: _table(path, each, database.get_message_by_name(name)) for name, each in rows.items()}
-    found = {name: table for name, table in tables.items() if table is not None}
-    if not found:
+        decoding = _Decoding(path, _database(path, beside, cantools), handing, aloud(handing.on))
+        damage: list[Damage] = []
+        for frame in _frames(path, can, aloud(ask.tell), damage):
+            decoding.take(frame)
+    tables = handing.rest(decoding.rows.tables(path, least=1 if handing.begun else 2))
+    if not tables:
         named = ", ".join(file.name for file in beside)
         raise LogError(f"{path}: no message in it is one of {named}; put the database of this vehicle beside it.")
-    listed = ", ".join(f"0x{one:X}" for one in list(unknown)[:6])
-    left = [f"{path.name}: {counted(sum(unknown.values()), 'frame')} of unknown messages left out, of {listed}."]
-    return told(found, left if unknown else (), damage)
+    return told(tables, decoding.unknown_said(), (*damage, *decoding.damage()))
 
 
-def _messages(path: Path, can: Any, database: Any, ask: Ask) -> tuple[Rows, Counter[int], list[Damage]]:
-    """The signals of every frame that is described; how many of each other identifier; where it breaks off."""
-    rows: Rows = defaultdict(list)
-    unknown: Counter[int] = Counter()
-    damage: list[Damage] = []
-    spoilt, read, last = 0, 0, 0.0
+def _database(path: Path, beside: list[Path], cantools: Any) -> Any:
+    """All of the databases as one."""
+    if not beside:
+        raise LogError(f"{path}: no .dbc file lies beside it; put one there that says what its messages mean.")
+    database = cantools.database.Database(strict=False)
+    for file in beside:
+        try:
+            database.add_dbc_file(str(file))
+        except Exception as error:
+            raise LogError(f"{file}: this database cannot be read ({reason(error)}); export it again.") from None
+    return database
+
+
+def _frames(path: Path, can: Any, tell: Callable[[float], None], damage: list[Damage]) -> Iterator[Any]:
+    """The frames with data, to the end or where the recording breaks off, which is put to `damage`."""
+    read, last = 0, 0.0
     try:
-        with _opened(path) as file:
-            for frame in (can.ASCReader if path.suffix.lower() == ".asc" else can.BLFReader)(file):
-                if frame.is_error_frame or frame.is_remote_frame:
-                    continue
-                read, last = read + 1, frame.timestamp
-                try:
-                    message = database.get_message_by_frame_id(frame.arbitration_id)
-                except KeyError:
-                    unknown[frame.arbitration_id] += 1
-                    continue
-                try:
-                    told_by = message.decode(bytes(frame.data), decode_choices=False, allow_truncated=True)
-                except Exception:
-                    spoilt += 1
-                    continue
-                rows[message.name].append({TIME: frame.timestamp, **_numbers(told_by)})
+        with _opened(path, tell) as file:
+            for frame in (can.ASCReader if _is_text(path) else can.BLFReader)(file):
+                if not (frame.is_error_frame or frame.is_remote_frame):
+                    read, last = read + 1, frame.timestamp
+                    yield frame
     except Exception as error:  # a damaged recording fails in as many ways as it can be damaged
         if isinstance(error, OSError) and error.errno is not None:
             raise  # no fault of the content
         if not read:
             raise LogError(f"{path}: not a recording of a CAN bus ({reason(error)}); export it again.") from None
         damage.append(Damage(f"the recording breaks off ({reason(error)})", f"frame {read}, {last:.3f} s"))
-    if spoilt:
-        damage.append(Damage(f"{counted(spoilt, 'frame')} cannot be decoded", "other places", "they were left out"))
-    return rows, unknown, damage
 
 
-def _opened(path: Path) -> IO[Any]:
+def _is_text(path: Path) -> bool:
+    return path.suffix.lower() == ".asc"
+
+
+def _opened(path: Path, tell: Callable[[float], None]) -> TextIOWrapper | TellingFile:
     """The file; readers that fail at its head would leave it open."""
-    return path.open(encoding="utf-8", errors="replace") if path.suffix.lower() == ".asc" else path.open("rb")
+    return TextIOWrapper(open_telling(path, tell), "utf-8", "replace") if _is_text(path) else TellingFile(path, tell)
 
 
-def _numbers(told_by: Any) -> dict[str, float]:
-    return {name: float(value) for name, value in told_by.items() if isinstance(value, int | float)}
+class _Decoding:
+    """Frames -> rows, and a count of those that are none. `hand_on`: hears the tables when they are PART numbers."""
 
+    def __init__(self, path: Path, database: Any, handing: Handing, hand_on: Callable[[Tables], None]) -> None:
+        self.path, self.database = path, database
+        self.rows = Rows()
+        self._hand_on = hand_on if handing.asked else None
+        self._unknown: Counter[int] = Counter()
+        self._spoilt = 0
 
-def _table(path: Path, rows: list[dict[str, float]], message: Any) -> Source | None:
-    """One message's signals as columns."""
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    if len(rows) < 2 or len(names) < 2:
-        return None
-    columns = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
-    unit = {signal.name: str(signal.unit or "") for signal in message.signals}
-    units = {name: spelled(unit[name]) for name in names if name in unit and unit[name] and known(unit[name])}
-    return Source(path, pl.DataFrame(columns), TIME, "s", units=units)
+    def take(self, frame: Any) -> None:
+        try:
+            message = self.database.get_message_by_frame_id(frame.arbitration_id)
+        except KeyError:
+            self._unknown[frame.arbitration_id] += 1
+            return
+        try:
+            signals = message.decode(bytes(frame.data), decode_choices=False, allow_truncated=True)
+        except Exception:
+            self._spoilt += 1
+            return
+        self.rows.take(message, frame.timestamp, signals)
+        if self._hand_on is not None and self.rows.numbers >= PART:
+            self._hand_on(self.rows.tables(self.path, least=1))
+            self.rows = Rows()
+
+    def unknown_said(self) -> list[str]:
+        if not self._unknown:
+            return []
+        listed = ", ".join(f"0x{one:X}" for one in list(self._unknown)[:6])
+        count = counted(sum(self._unknown.values()), "frame")
+        return [f"{self.path.name}: {count} of unknown messages left out, of {listed}."]
+
+    def damage(self) -> list[Damage]:
+        if not self._spoilt:
+            return []
+        return [Damage(f"{counted(self._spoilt, 'frame')} cannot be decoded", "other places", "they were left out")]

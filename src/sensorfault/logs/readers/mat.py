@@ -2,20 +2,23 @@
 
 import struct
 from collections import Counter
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.apart import load_apart, reason
-from sensorfault.logs.readers.mat_load import VERSION_7_3, load
+from sensorfault.logs.readers.apart import Loaded, load_apart, reason
+from sensorfault.logs.readers.extra import missing
+from sensorfault.logs.readers.mat_load import load
 from sensorfault.logs.readers.native import native
-from sensorfault.logs.readers.source import Ask, Source, Tables
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
 from sensorfault.logs.table import LogError
 
 _HEAD, _TAG = 128, struct.Struct("<II")
 _PACKED = 15  # miCOMPRESSED
+_NEWEST = b"MATLAB 7.3"  # how it begins; HDF5 follows
 _OWN = "variables"  # the table of vectors that stand in no structure
 
 
@@ -23,25 +26,43 @@ def read_mat(path: Path, ask: Ask) -> Tables:
     """Every table in the file, by the name of its structure. Functions and objects are left alone.
 
     Raises:
-        LogError: not a whole MATLAB file, one of version 7.3 (HDF5), or no vectors of numbers in it.
+        LogError: not a whole MATLAB file, no vectors of numbers in it, or of version 7.3 and h5py is not installed.
     """
-    tables = {name or _OWN: _table(path, vectors) for name, vectors in _structures(path).items()}
+    loaded = _loaded(path)
+    damage = [
+        Damage(f"a vector cannot be read ({why})", f"'{name}'", "the others were read")
+        for name, why in loaded.told.get("lost", ())
+    ]
+    tables = {name or _OWN: _table(path, vectors) for name, vectors in loaded.vectors.items()}
     whole = {name: table for name, table in tables.items() if table is not None}
     if not whole:
-        raise LogError(f"{path}: no vectors of numbers of one length; save a structure of them, with one for the time.")
-    return whole
+        lost = f" ({damage[0].what} at {damage[0].where})" if damage else ""
+        raise LogError(
+            f"{path}: no vectors of numbers of one length{lost}; save a structure of them, with one for the time."
+        )
+    return told(whole, (), damage)
 
 
-def _structures(path: Path) -> dict[str, dict[str, np.ndarray]]:
+def _loaded(path: Path) -> Loaded:
     """What is packed (version 7, MATLAB's default) carries checksums: all else is read where damage does no harm."""
+    newest = _is_7_3(path)
+    if newest and find_spec("h5py") is None:
+        raise missing(path, "h5py", "matlab")
     try:
-        return (load(str(path)) if _all_packed(path) else load_apart("mat_load", path)).vectors
+        if newest:
+            return load_apart("mat73_load", path)
+        return load(str(path)) if _all_packed(path) else load_apart("mat_load", path)
     except Exception as error:  # a damaged file fails in as many ways as it can be damaged
         if isinstance(error, OSError) and error.errno is not None:
             raise  # no fault of the content
-        why = reason(error)
-        what = "this is MATLAB's version 7.3" if why == VERSION_7_3 else f"not a whole MATLAB file ({why})"
-        raise LogError(f"{path}: {what}; save it again with `save(..., '-v7')`.") from None
+        raise LogError(
+            f"{path}: not a whole MATLAB file ({reason(error)}); save it again with `save(..., '-v7')`."
+        ) from None
+
+
+def _is_7_3(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(_NEWEST)) == _NEWEST
 
 
 def _all_packed(path: Path) -> bool:

@@ -8,7 +8,6 @@ import numpy as np
 from sensorfault.logs.readers.apart import Loaded
 
 _NUMBERS = "biuf"  # numpy's letters for truths, whole numbers and floats
-VERSION_7_3 = "version 7.3"
 
 
 def load(path: str) -> Loaded:
@@ -21,10 +20,7 @@ def load(path: str) -> Loaded:
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        try:
-            found = loadmat(path, squeeze_me=True, struct_as_record=False)
-        except NotImplementedError:
-            raise ValueError(VERSION_7_3) from None
+        found = loadmat(path, squeeze_me=True, struct_as_record=False)
     found = {name: one for name, one in found.items() if not name.startswith("__")}
     structures = {name: vars(one) for name, one in found.items() if hasattr(one, "_fieldnames")}
     structures[""] = {name: one for name, one in found.items() if name not in structures}

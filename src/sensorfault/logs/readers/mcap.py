@@ -8,6 +8,7 @@ from typing import Any
 
 from sensorfault.logs.readers.bag2 import parts_of
 from sensorfault.logs.readers.decoded import Recording
+from sensorfault.logs.readers.protobuf import protobuf_decoder
 from sensorfault.logs.readers.ros_types import Decoder, decoder
 from sensorfault.logs.readers.source import Ask, Damage, Tables
 from sensorfault.logs.readers.telling import TellingFile
@@ -19,7 +20,7 @@ _LARGEST = 1 << 30  # no chunk is larger, and no record that is larger than its 
 
 
 def read_mcap(path: Path, ask: Ask) -> Tables:
-    """Every topic of ROS messages or JSON that holds numbers.
+    """Every topic of ROS messages, protocol buffers or JSON that holds numbers.
 
     Raises:
         LogError: empty, no MCAP, or no topic with numbers in it.
@@ -118,4 +119,6 @@ def _decoder(encoding: str, schema: Any) -> Decoder | None:
     if encoding in ("cdr", "ros1") and schema is not None:
         text = schema.data.decode("utf-8", "replace")
         return decoder(schema.name, text, 1 if encoding == "ros1" else 2, idl=schema.encoding == "ros2idl")
+    if encoding == "protobuf" and schema is not None:
+        return protobuf_decoder(schema.name, schema.data)
     return None

@@ -7,28 +7,29 @@ from typing import Any
 
 Decoder = Callable[[bytes], Any]
 
-# REP 103: all in SI. The fields of the usual types that a name alone does not tell.
+# REP 103, and Foxglove's schemas: all in SI. The fields of the usual types that a name alone does not tell.
 _UNITS = tuple(
     (re.compile(pattern), unit)
     for pattern, unit in (
         (r"(^|\.)(angular_velocity|angular)\.[xyz]$", "rad/s"),
         (r"(^|\.)linear_acceleration\.[xyz]$", "m/s^2"),
-        (r"(^|\.)linear\.[xyz]$", "m/s"),
+        (r"(^|\.)(linear|linear_velocity|velocity)\.[xyz]$", "m/s"),
         (r"(^|\.)position\.[xyz]$", "m"),
         (r"(^|\.)magnetic_field\.[xyz]$", "T"),
-        (r"^position\[\d+\]$", "rad"),  # of a JointState
-        (r"^velocity\[\d+\]$", "rad/s"),
-        (r"^effort\[\d+\]$", "Nm"),
+        (r"^(joints\[\d+\]\.position|position\[\d+\])$", "rad"),  # of JointStates, of a JointState
+        (r"^(joints\[\d+\]\.velocity|velocity\[\d+\])$", "rad/s"),
+        (r"^(joints\[\d+\]\.effort|effort\[\d+\])$", "Nm"),
         (r"^fluid_pressure$", "Pa"),
         (r"^(latitude|longitude)$", "deg"),
         (r"^(altitude|range)$", "m"),
+        (r"^heading$", "rad"),  # of a LocationFix
     )
 )
 
 
 def si_unit_of(kind: str, field: str) -> str:
-    """The unit of a field of one of ROS's own types of sensors and motion; empty for others."""
-    if not kind.startswith(("sensor_msgs/", "geometry_msgs/", "nav_msgs/")):
+    """The unit of a field of one of ROS's or Foxglove's own types of sensors and motion; empty for others."""
+    if not kind.startswith(("sensor_msgs/", "geometry_msgs/", "nav_msgs/", "foxglove.")):
         return ""
     return next((unit for pattern, unit in _UNITS if pattern.search(field)), "")
 

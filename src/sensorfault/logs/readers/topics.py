@@ -11,10 +11,13 @@ import polars as pl
 
 from sensorfault.logs.readers.fields import Fields
 from sensorfault.logs.readers.handing import Handing
+from sensorfault.logs.readers.protobuf_fields import ProtobufFields
 from sensorfault.logs.readers.ros_types import si_unit_of
 from sensorfault.logs.readers.source import PART, Ask, Source, Tables, told
 
-RECEIVED, STAMP = "received_time", "header.stamp"
+RECEIVED = "received_time"
+_STAMPS = ("header.stamp", "timestamp")  # ROS's, Foxglove's
+_PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("seconds", "nanos"))  # ROS's, Foxglove's in JSON, protocol buffers'
 _APART_S = 3600.0  # stamps so far from the recording's clock are of another clock
 _RISING = 0.8  # share of the stamps that must be later than the one before
 _NS = 10**9
@@ -88,8 +91,12 @@ class Topics:
 
 class _Topic:
     def __init__(self, kind: str, first: Any) -> None:
-        self.kind, self.fields = kind, Fields(first)
-        self._stamp = None if isinstance(first, dict) or not _stamp_ns(first) else attrgetter(f"{STAMP}")
+        self.kind = kind
+        self.fields = ProtobufFields(first) if hasattr(first, "DESCRIPTOR") else Fields(first)
+        told = ((path, parts) for path in _STAMPS for parts in _PARTS if None not in _parts(first, path, parts))
+        self.stamp, self.stamp_parts = next(told, (_STAMPS[0], _PARTS[0]))
+        quick = not isinstance(first, dict) and None not in _parts(first, self.stamp, self.stamp_parts)
+        self._stamp = attrgetter(*(f"{self.stamp}.{part}" for part in self.stamp_parts)) if quick else None
         self.clear()
 
     @property
@@ -101,10 +108,11 @@ class _Topic:
 
     def take(self, received_ns: int, message: Any) -> None:
         if self._stamp is not None:
-            stamp = self._stamp(message)
-            stamp_ns = stamp.sec * _NS + stamp.nanosec
+            second, rest = self._stamp(message)
         else:
-            stamp_ns = _stamp_ns(message)
+            second, rest = _parts(message, self.stamp, self.stamp_parts)
+        # when the sensor measured, by its own driver; 0 if it does not say
+        stamp_ns = int(second or 0) * _NS + int(rest or 0)
         received_ns, stamp_ns = min(received_ns, _LATEST_NS), max(-_LATEST_NS, min(stamp_ns, _LATEST_NS))
         self.fields.take(message, self._rows)
         self._received.append(received_ns)
@@ -113,36 +121,36 @@ class _Topic:
     def table(self, path: Path, topic: str, unit_of: Callable[[str, str], str]) -> Source:
         received, stamp = np.array(self._received), np.array(self._stamps)
         rows = np.array(self._rows).reshape(len(received), -1)
-        names = [(i, name) for i, name in enumerate(self.fields.names) if not name.startswith(f"{STAMP}.")]
-        columns = {RECEIVED: received, STAMP: stamp} if stamp.any() else {RECEIVED: received}
+        names = [(i, name) for i, name in enumerate(self.fields.names) if not name.startswith(f"{self.stamp}.")]
+        columns = {RECEIVED: received, self.stamp: stamp} if stamp.any() else {RECEIVED: received}
         columns |= {name: np.ascontiguousarray(rows[:, i]) for i, name in names}
         frame = pl.DataFrame({name: pl.Series(name, column, nan_to_null=False) for name, column in columns.items()})
-        time, notes = _clock(path, topic, received, stamp)
+        believed, notes = _believed(path, topic, received, stamp)
         units = {name: unit for _, name in names if (unit := unit_of(self.kind, name))}
-        return Source(path, frame, time, "ns", notes=tuple(notes), units=units)
+        return Source(path, frame, self.stamp if believed else RECEIVED, "ns", notes=tuple(notes), units=units)
 
 
-def _stamp_ns(message: Any) -> int:
-    """When the sensor measured, by its own driver; 0 if it does not say."""
-    stamp = _member(_member(message, "header"), "stamp")
-    second, rest = _member(stamp, "sec"), _member(stamp, "nanosec")
-    return int(second or 0) * _NS + int(rest or 0)
+def _parts(message: Any, path: str, parts: tuple[str, str]) -> tuple[Any, Any]:
+    """Seconds and nanoseconds, None where there are none."""
+    for name in path.split("."):
+        message = _member(message, name)
+    return _member(message, parts[0]), _member(message, parts[1])
 
 
 def _member(part: Any, name: str) -> Any:
     return part.get(name) if isinstance(part, dict) else getattr(part, name, None)
 
 
-def _clock(path: Path, topic: str, received: np.ndarray, stamp: np.ndarray) -> tuple[str, list[str]]:
-    """The stamps, which tell when was measured, if they can be believed; else when the recorder heard of it."""
+def _believed(path: Path, topic: str, received: np.ndarray, stamp: np.ndarray) -> tuple[bool, list[str]]:
+    """Whether the stamps, which tell when was measured, can be believed; else the time of reception counts."""
     if not stamp.any():
-        return RECEIVED, []
+        return False, []
     if len(stamp) > 1 and np.mean(np.diff(stamp) > 0) < _RISING:
-        return RECEIVED, [f"{path.name}: the stamps of {topic} do not rise; the time of reception counts instead."]
+        return False, [f"{path.name}: the stamps of {topic} do not rise; the time of reception counts instead."]
     apart_s = float(np.median((stamp - received) / _NS))
     if abs(apart_s) > _APART_S:
-        return RECEIVED, [
+        return False, [
             f"{path.name}: the stamps of {topic} are of another clock, {apart_s:.6g} s off the recording's; "
             "the time of reception counts instead."
         ]
-    return STAMP, []
+    return True, []

@@ -16,4 +16,6 @@ EARTH_MU = {  # gravitational constant times the mass of the earth, as each syst
 }
 L1_HZ = 1_575.42e6
 """The frequency that GPS and Galileo share, and that Klobuchar's delay is told for."""
+B3I_HZ = 1_268.52e6
+"""BeiDou's, by which its satellites' clocks are told (BDS-SIS-ICD-B1I, 5.2.4.10)."""
 WEEK_S = 604_800.0

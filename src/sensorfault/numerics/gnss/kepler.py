@@ -1,7 +1,8 @@
-"""Broadcast orbits of Kepler's kind: GPS, QZSS, Galileo, and BeiDou's satellites that are not geostationary.
+"""Broadcast orbits of Kepler's kind: GPS, QZSS, Galileo and BeiDou.
 
-Source: IS-GPS-200 (2022), tables 20-IV and 20.3.3.3.3.1; Galileo OS SIS ICD (2021), tables 64 and 5.1.3. Times are
-seconds of GPS time since 1980-01-06, which a float64 holds to 0.2 µs (a millimetre of a satellite's way).
+Source: IS-GPS-200 (2022), tables 20-IV and 20.3.3.3.3.1; Galileo OS SIS ICD (2021), tables 64 and 5.1.3;
+BDS-SIS-ICD-B1I 3.0 (2019), table 5-11. Times are seconds of GPS time since 1980-01-06, which a float64 holds to 0.2 µs
+(a millimetre of a satellite's way).
 """
 
 from typing import Any, NamedTuple
@@ -10,6 +11,7 @@ from jaxtyping import Float
 
 from sensorfault.numerics.gnss.constants import LIGHT_M_S
 from sensorfault.numerics.gnss.namespace import namespace
+from sensorfault.numerics.gnss.turn import turn
 
 _ROUNDS = 6  # of Newton's method; an eccentricity of 0.3 needs five to reach 1e-15
 _STEP_S = 0.5
@@ -45,6 +47,7 @@ class Ephemeris(NamedTuple):
     toe_of_week: Each  # toe counted from the start of its own system's week [s]
     mu: Each  # [m³/s²]
     earth_rate: Each  # Ω̇e [rad/s]
+    tilt: Each  # about the x axis, of the equator that the orbit is told by; 0 but for geostationary satellites
 
 
 def eccentric_anomaly(mean: Numbers, eccentricity: Numbers) -> Numbers:
@@ -77,18 +80,17 @@ def position(ephemeris: Ephemeris, time: Numbers) -> Float[Any, "*#n 3"]:
     r = ephemeris.sqrt_a**2 * (1 - e * xp.cos(anomaly)) + ephemeris.crs * sin2 + ephemeris.crc * cos2
     # i = i0 + IDOT t + Cis sin 2φ + Cic cos 2φ
     i = ephemeris.inclination + ephemeris.inclination_rate * since + ephemeris.cis * sin2 + ephemeris.cic * cos2
-    # Ω = Ω0 + (Ω̇ - Ω̇e) t - Ω̇e toe
-    node = ephemeris.node + ephemeris.node_rate * since - ephemeris.earth_rate * (since + ephemeris.toe_of_week)
+    # Ω = Ω0 + Ω̇ t - Ω̇e toe: in a frame that stands still where the earth's was at toe
+    node = ephemeris.node + ephemeris.node_rate * since - ephemeris.earth_rate * ephemeris.toe_of_week
     along, across = r * xp.cos(u), r * xp.sin(u)
     # x = x' cos Ω - y' cos i sin Ω,  y = x' sin Ω + y' cos i cos Ω,  z = y' sin i
-    return xp.stack(
-        (
-            along * xp.cos(node) - across * xp.cos(i) * xp.sin(node),
-            along * xp.sin(node) + across * xp.cos(i) * xp.cos(node),
-            across * xp.sin(i),
-        ),
-        axis=-1,
-    )
+    x = along * xp.cos(node) - across * xp.cos(i) * xp.sin(node)
+    y = along * xp.sin(node) + across * xp.cos(i) * xp.cos(node)
+    z = across * xp.sin(i)
+    # Rz(Ω̇e t) Rx(tilt)
+    y, z = turn(y, z, ephemeris.tilt)
+    x, y = turn(x, y, ephemeris.earth_rate * since)
+    return xp.stack((x, y, z), axis=-1)
 
 
 def velocity(ephemeris: Ephemeris, time: Numbers) -> Float[Any, "*#n 3"]:

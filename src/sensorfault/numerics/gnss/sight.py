@@ -6,6 +6,7 @@ from jaxtyping import Float
 
 from sensorfault.numerics.gnss.constants import EARTH_RATE_RAD_S, LIGHT_M_S
 from sensorfault.numerics.gnss.namespace import namespace
+from sensorfault.numerics.gnss.turn import turn
 
 Numbers = float | Float[Any, "*#n"]
 Points = Float[Any, "*#n 3"]
@@ -22,10 +23,8 @@ def turned(satellite: Points, flight_s: Numbers) -> Float[Any, "*#n 3"]:
     """
     xp = namespace(satellite, flight_s)
     angle = EARTH_RATE_RAD_S * flight_s
-    sin, cos = xp.sin(angle), xp.cos(angle)
-    # x' = x cos Ω̇eτ + y sin Ω̇eτ,  y' = -x sin Ω̇eτ + y cos Ω̇eτ
-    x, y, z = satellite[..., 0], satellite[..., 1], satellite[..., 2]
-    return xp.stack((x * cos + y * sin, y * cos - x * sin, z + 0 * angle), axis=-1)
+    x, y = turn(satellite[..., 0], satellite[..., 1], angle)
+    return xp.stack((x, y, satellite[..., 2] + 0 * angle), axis=-1)
 
 
 def distance(receiver: Points, satellite: Points) -> Float[Any, "*#n"]:

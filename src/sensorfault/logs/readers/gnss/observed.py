@@ -1,7 +1,7 @@
 """What a receiver measured of each satellite, epoch by epoch, and the table that is made of it."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -36,12 +36,14 @@ WHY = "one satellite as it was received; its values are for what knows where it 
 class Observed:
     """T epochs of S satellites, NaN where nothing was received.
 
-    `time`: of reception by the receiver's clock [s of GPS time]. `value`: by name as in UNITS.
+    `time`: of reception by the receiver's clock [s of GPS time]. `value`: by name as in UNITS. `frequency`: that was
+    heard of a system (`C`), where it is not its first [Hz].
     """
 
     time: Float[np.ndarray, " T"]
     satellites: tuple[str, ...]
     value: Mapping[str, Float[np.ndarray, "T S"]]
+    frequency: Mapping[str, float] = field(default_factory=dict)
 
     def table(
         self,
@@ -61,7 +63,12 @@ class Observed:
 
 
 def observed(
-    epochs: list[float], names: list[str], epoch: list[int], satellite: list[int], values: Mapping[str, list[float]]
+    epochs: list[float],
+    names: list[str],
+    epoch: list[int],
+    satellite: list[int],
+    values: Mapping[str, list[float]],
+    frequency: Mapping[str, float] | None = None,
 ) -> Observed:
     """Gather single measurements.
 
@@ -71,6 +78,7 @@ def observed(
         epoch: which one each measurement is of.
         satellite: which one each is of.
         values: by name as in UNITS, one for each measurement.
+        frequency: as of `Observed`.
     """
     order = np.argsort(names, kind="stable")
     place = np.argsort(order)[np.array(satellite, int)]
@@ -78,7 +86,7 @@ def observed(
     for name, each in values.items():
         dense[name] = np.full((len(epochs), len(names)), np.nan)
         dense[name][np.array(epoch, int), place] = each
-    return Observed(np.array(epochs), tuple(names[i] for i in order), dense)
+    return Observed(np.array(epochs), tuple(names[i] for i in order), dense, frequency or {})
 
 
 def satellite_sensors(columns: Iterable[str]) -> tuple[SensorEntry, ...]:

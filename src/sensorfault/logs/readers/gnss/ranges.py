@@ -10,7 +10,7 @@ from sensorfault.logs.readers.gnss.observed import Observed
 from sensorfault.numerics.geodesy import ecef_to_geodetic, enu_axes
 from sensorfault.numerics.gnss import sight
 from sensorfault.numerics.gnss.atmosphere import klobuchar, saastamoinen
-from sensorfault.numerics.gnss.constants import LIGHT_M_S, WEEK_S
+from sensorfault.numerics.gnss.constants import L1_HZ, LIGHT_M_S, WEEK_S
 
 _ROUNDS = 10
 _EARTH_M = (6.3e6, 6.5e6)  # from the centre: where a receiver on or over the ground is
@@ -45,21 +45,22 @@ def with_satellites(seen: Observed, broadcast: Broadcast) -> Observed:
     }
     receiver = _somewhere(corrected, place, seen.satellites)
     if receiver is not None:
-        delay, elevation = _air(receiver, place, seen.time, broadcast)
+        delay, elevation = _air(receiver, place, seen, broadcast)
         known |= {"corrected_m": corrected - delay, "elevation_rad": elevation}
     return replace(seen, value={**seen.value, **known})
 
 
 def _air(
-    receiver: Float[np.ndarray, "3"], place: Float[np.ndarray, "T S 3"], time: np.ndarray, broadcast: Broadcast
+    receiver: Float[np.ndarray, "3"], place: Float[np.ndarray, "T S 3"], seen: Observed, broadcast: Broadcast
 ) -> tuple[Float[np.ndarray, "T S"], Float[np.ndarray, "T S"]]:
     """The delay by the air [m], and the elevation of the satellites [rad]."""
     latitude, longitude, height = (float(one) for one in ecef_to_geodetic(receiver))
     elevation, azimuth = sight.elevation_azimuth(receiver, place, enu_axes(latitude, longitude))
     delay = np.asarray(saastamoinen(latitude, height, elevation))
     if broadcast.klobuchar is not None:
-        tow = (time % WEEK_S)[:, None]
-        delay = delay + klobuchar(broadcast.klobuchar, latitude, longitude, elevation, azimuth, tow)
+        tow = (seen.time % WEEK_S)[:, None]
+        frequency = np.array([seen.frequency.get(name[0], L1_HZ) for name in seen.satellites])
+        delay = delay + klobuchar(broadcast.klobuchar, latitude, longitude, elevation, azimuth, tow, frequency)
     return delay, elevation
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sensorfault.logs.readers.gnss.beidou import LATE_S, tilt
 from sensorfault.logs.readers.gnss.broadcast import Broadcast, gathered
 from sensorfault.logs.readers.gnss.observed import Observed
 from sensorfault.logs.readers.gnss.rinex import Header, calendar_s, lines_of, read_header
@@ -23,12 +24,11 @@ from sensorfault.numerics.gnss.kepler import Ephemeris
 _LINES = {"R": 4, "S": 4}  # a record has eight lines else
 _WIDTH = 19
 _EVERY_S, _DAY_S = 300.0, 86_400.0
-_BEIDOU_WEEK, _BEIDOU_LATE_S = 1356, 14.0  # BeiDou's week 0, and how far its time is behind GPS time
-_GEOSTATIONARY = {*(f"C{i:02}" for i in (1, 2, 3, 4, 5)), *(f"C{i}" for i in range(59, 64))}  # turned in another way
+_BEIDOU_WEEK = 1356  # its week 0
 
 
 def read_nav(path: Path) -> Broadcast:
-    """The healthy satellites' ephemerides; SBAS, geostationary BeiDou and records that are cut off are left out.
+    """The healthy satellites' ephemerides; SBAS and records that are cut off are left out.
 
     Raises:
         LogError: no navigation file, or no ephemeris in it.
@@ -46,8 +46,8 @@ def read_nav(path: Path) -> Broadcast:
         if satellite[0] == "R":
             if fields[6] == 0:
                 states[satellite].append(_state(epoch, fields))
-        elif satellite[0] in EARTH_MU and satellite not in _GEOSTATIONARY and fields[24] == 0:
-            orbits[satellite].append(_orbit(satellite[0], epoch, fields))
+        elif satellite[0] in EARTH_MU and fields[24] == 0:
+            orbits[satellite].append(_orbit(satellite, epoch, fields))
     found = gathered(orbits, states, header.klobuchar)
     if not found.satellites:
         raise LogError(f"{path}: no ephemeris of a healthy satellite below its header; take the file of another day.")
@@ -103,9 +103,10 @@ def _number(line: str, start: int) -> float:
     return float(text.replace("D", "E").replace("d", "e")) if text else 0.0
 
 
-def _orbit(system: str, epoch: float, fields: list[float]) -> Ephemeris:
+def _orbit(satellite: str, epoch: float, fields: list[float]) -> Ephemeris:
     """A record of Kepler's kind; its first three numbers are the clock's."""
-    late = _BEIDOU_LATE_S if system == "C" else 0.0
+    system = satellite[0]
+    late = LATE_S if system == "C" else 0.0
     week = fields[21] + (_BEIDOU_WEEK if system == "C" else 0)
     return Ephemeris(
         toe=week * WEEK_S + fields[11] + late,
@@ -132,6 +133,7 @@ def _orbit(system: str, epoch: float, fields: list[float]) -> Ephemeris:
         inclination_rate=fields[19],
         mu=EARTH_MU[system],
         earth_rate=EARTH_RATE[system],
+        tilt=tilt(satellite),
     )
 
 

@@ -4,94 +4,73 @@ Source: IS-GPS-200 (2022), figure 20-1 and tables 20-I, 20-III, 20-X; Galileo OS
 u-blox packs them: F9 HPG interface description, RXM-SFRBX.
 """
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.numerics.gnss.constants import EARTH_MU, EARTH_RATE, WEEK_S
+from sensorfault.logs.readers.gnss.bits import Field, joined, nearest
+from sensorfault.numerics.gnss.constants import EARTH_MU, EARTH_RATE
 from sensorfault.numerics.gnss.kepler import Ephemeris
-
-
-class _Field(NamedTuple):
-    """A number of so many bits: in which subframe or word, where it begins, times 2^power; angles in semicircles."""
-
-    part: int
-    start: int
-    bits: int
-    power: int
-    signed: bool = True
-    angle: bool = False
-
-    def of(self, parts: dict[int, int], length: int) -> float:
-        """Its value; `length`: bits of a part."""
-        raw = parts[self.part] >> (length - self.start - self.bits) & (1 << self.bits) - 1
-        if self.signed and raw >> (self.bits - 1):
-            raw -= 1 << self.bits
-        return math.ldexp(raw, self.power) * (math.pi if self.angle else 1.0)
-
 
 # Bits of a GPS subframe are counted without parity: 24 a word.
 _LNAV_BITS = 240
 _LNAV = {
-    "group_delay": _Field(1, 160, 8, -31),
-    "toc": _Field(1, 176, 16, 4, signed=False),
-    "af2": _Field(1, 192, 8, -55),
-    "af1": _Field(1, 200, 16, -43),
-    "af0": _Field(1, 216, 22, -31),
-    "crs": _Field(2, 56, 16, -5),
-    "delta_n": _Field(2, 72, 16, -43, angle=True),
-    "anomaly": _Field(2, 88, 32, -31, angle=True),
-    "cuc": _Field(2, 120, 16, -29),
-    "eccentricity": _Field(2, 136, 32, -33, signed=False),
-    "cus": _Field(2, 168, 16, -29),
-    "sqrt_a": _Field(2, 184, 32, -19, signed=False),
-    "toe_of_week": _Field(2, 216, 16, 4, signed=False),
-    "cic": _Field(3, 48, 16, -29),
-    "node": _Field(3, 64, 32, -31, angle=True),
-    "cis": _Field(3, 96, 16, -29),
-    "inclination": _Field(3, 112, 32, -31, angle=True),
-    "crc": _Field(3, 144, 16, -5),
-    "perigee": _Field(3, 160, 32, -31, angle=True),
-    "node_rate": _Field(3, 192, 24, -43, angle=True),
-    "inclination_rate": _Field(3, 224, 14, -43, angle=True),
+    "group_delay": Field(1, 160, 8, -31),
+    "toc": Field(1, 176, 16, 4, signed=False),
+    "af2": Field(1, 192, 8, -55),
+    "af1": Field(1, 200, 16, -43),
+    "af0": Field(1, 216, 22, -31),
+    "crs": Field(2, 56, 16, -5),
+    "delta_n": Field(2, 72, 16, -43, angle=True),
+    "anomaly": Field(2, 88, 32, -31, angle=True),
+    "cuc": Field(2, 120, 16, -29),
+    "eccentricity": Field(2, 136, 32, -33, signed=False),
+    "cus": Field(2, 168, 16, -29),
+    "sqrt_a": Field(2, 184, 32, -19, signed=False),
+    "toe_of_week": Field(2, 216, 16, 4, signed=False),
+    "cic": Field(3, 48, 16, -29),
+    "node": Field(3, 64, 32, -31, angle=True),
+    "cis": Field(3, 96, 16, -29),
+    "inclination": Field(3, 112, 32, -31, angle=True),
+    "crc": Field(3, 144, 16, -5),
+    "perigee": Field(3, 160, 32, -31, angle=True),
+    "node_rate": Field(3, 192, 24, -43, angle=True),
+    "inclination_rate": Field(3, 224, 14, -43, angle=True),
 }
 _LNAV_ISSUES = (
-    _Field(1, 168, 8, 0, signed=False),
-    _Field(2, 48, 8, 0, signed=False),
-    _Field(3, 216, 8, 0, signed=False),
+    Field(1, 168, 8, 0, signed=False),
+    Field(2, 48, 8, 0, signed=False),
+    Field(3, 216, 8, 0, signed=False),
 )
-_LNAV_HEALTH = _Field(1, 64, 6, 0, signed=False)
+_LNAV_HEALTH = Field(1, 64, 6, 0, signed=False)
 _KLOBUCHAR_PAGE = 56  # the satellite number that subframe 4's page 18 bears
-_KLOBUCHAR = tuple(_Field(4, 56 + 8 * i, 8, power) for i, power in enumerate((-30, -27, -24, -24, 11, 14, 16, 16)))
+_KLOBUCHAR = tuple(Field(4, 56 + 8 * i, 8, power) for i, power in enumerate((-30, -27, -24, -24, 11, 14, 16, 16)))
 
 _INAV_BITS = 128
 _INAV = {
-    "toe_of_week": _Field(1, 16, 14, 0, signed=False),  # minutes
-    "anomaly": _Field(1, 30, 32, -31, angle=True),
-    "eccentricity": _Field(1, 62, 32, -33, signed=False),
-    "sqrt_a": _Field(1, 94, 32, -19, signed=False),
-    "node": _Field(2, 16, 32, -31, angle=True),
-    "inclination": _Field(2, 48, 32, -31, angle=True),
-    "perigee": _Field(2, 80, 32, -31, angle=True),
-    "inclination_rate": _Field(2, 112, 14, -43, angle=True),
-    "node_rate": _Field(3, 16, 24, -43, angle=True),
-    "delta_n": _Field(3, 40, 16, -43, angle=True),
-    "cuc": _Field(3, 56, 16, -29),
-    "cus": _Field(3, 72, 16, -29),
-    "crc": _Field(3, 88, 16, -5),
-    "crs": _Field(3, 104, 16, -5),
-    "cic": _Field(4, 22, 16, -29),
-    "cis": _Field(4, 38, 16, -29),
-    "toc": _Field(4, 54, 14, 0, signed=False),  # minutes
-    "af0": _Field(4, 68, 31, -34),
-    "af1": _Field(4, 99, 21, -46),
-    "af2": _Field(4, 120, 6, -59),
-    "group_delay": _Field(5, 57, 10, -32),  # of the clock that E1 and E5b make
+    "toe_of_week": Field(1, 16, 14, 0, signed=False),  # minutes
+    "anomaly": Field(1, 30, 32, -31, angle=True),
+    "eccentricity": Field(1, 62, 32, -33, signed=False),
+    "sqrt_a": Field(1, 94, 32, -19, signed=False),
+    "node": Field(2, 16, 32, -31, angle=True),
+    "inclination": Field(2, 48, 32, -31, angle=True),
+    "perigee": Field(2, 80, 32, -31, angle=True),
+    "inclination_rate": Field(2, 112, 14, -43, angle=True),
+    "node_rate": Field(3, 16, 24, -43, angle=True),
+    "delta_n": Field(3, 40, 16, -43, angle=True),
+    "cuc": Field(3, 56, 16, -29),
+    "cus": Field(3, 72, 16, -29),
+    "crc": Field(3, 88, 16, -5),
+    "crs": Field(3, 104, 16, -5),
+    "cic": Field(4, 22, 16, -29),
+    "cis": Field(4, 38, 16, -29),
+    "toc": Field(4, 54, 14, 0, signed=False),  # minutes
+    "af0": Field(4, 68, 31, -34),
+    "af1": Field(4, 99, 21, -46),
+    "af2": Field(4, 120, 6, -59),
+    "group_delay": Field(5, 57, 10, -32),  # of the clock that E1 and E5b make
 }
-_INAV_ISSUES = tuple(_Field(word, 6, 10, 0, signed=False) for word in (1, 2, 3, 4))
-_INAV_HEALTH = _Field(5, 69, 2, 0, signed=False)
+_INAV_ISSUES = tuple(Field(word, 6, 10, 0, signed=False) for word in (1, 2, 3, 4))
+_INAV_HEALTH = Field(5, 69, 2, 0, signed=False)
 
 
 class Subframes:
@@ -112,7 +91,7 @@ class Subframes:
             if len(words) < 8:
                 return None
             # an even and an odd page of 128 bits: odd or even, nominal or alert, then 112 and 16 bits of the word
-            even, odd = (_joined(words[i : i + 4], 32) for i in (0, 4))
+            even, odd = (joined(words[i : i + 4], 32) for i in (0, 4))
             if even >> 126 or odd >> 126 != 0b10:
                 return None
             word = (even >> 14 & (1 << 112) - 1) << 16 | (odd >> 110 & 0xFFFF)
@@ -120,7 +99,7 @@ class Subframes:
             return self._ephemeris(_INAV, _INAV_ISSUES, _INAV_HEALTH, _INAV_BITS, time)
         if len(words) < 10:
             return None
-        subframe = _joined(tuple(word >> 6 & 0xFFFFFF for word in words[:10]), 24)
+        subframe = joined(tuple(word >> 6 & 0xFFFFFF for word in words[:10]), 24)
         number = subframe >> (_LNAV_BITS - 46) & 7
         if number != 4 or subframe >> (_LNAV_BITS - 56) & 63 == _KLOBUCHAR_PAGE:
             self.parts[number] = subframe
@@ -133,7 +112,7 @@ class Subframes:
         return np.array([field.of(self.parts, _LNAV_BITS) for field in _KLOBUCHAR])
 
     def _ephemeris(
-        self, fields: dict[str, _Field], issues: tuple[_Field, ...], health: _Field, length: int, time: float
+        self, fields: dict[str, Field], issues: tuple[Field, ...], health: Field, length: int, time: float
     ) -> Ephemeris | None:
         needed = {field.part for field in fields.values()}
         if not needed <= self.parts.keys() or len({issue.of(self.parts, length) for issue in issues}) > 1:
@@ -143,19 +122,7 @@ class Subframes:
         told = {name: field.of(self.parts, length) for name, field in fields.items()}
         if self.system == "E":
             told["toe_of_week"], told["toc"] = 60 * told["toe_of_week"], 60 * told["toc"]
-        told["toe"], told["toc"] = (_nearest(told[name], time) for name in ("toe_of_week", "toc"))
+        told["toe"], told["toc"] = (nearest(told[name], time) for name in ("toe_of_week", "toc"))
         for part in issues:  # the next one is made of what comes from now on
             del self.parts[part.part]
-        return Ephemeris(**told, mu=EARTH_MU[self.system], earth_rate=EARTH_RATE[self.system])
-
-
-def _joined(words: tuple[int, ...], bits: int) -> int:
-    joined = 0
-    for word in words:
-        joined = joined << bits | word
-    return joined
-
-
-def _nearest(of_week: float, time: float) -> float:
-    """The time of week in the week that brings it nearest to a time [s of GPS time]."""
-    return of_week + round((time - of_week) / WEEK_S) * WEEK_S
+        return Ephemeris(**told, mu=EARTH_MU[self.system], earth_rate=EARTH_RATE[self.system], tilt=0.0)

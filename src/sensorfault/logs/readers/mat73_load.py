@@ -1,0 +1,62 @@
+"""The vectors in a MATLAB file of version 7.3, which is HDF5, by h5py."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from sensorfault.logs.readers.apart import Loaded, reason
+
+_NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
+
+
+def load(path: str) -> Loaded:
+    """The same of version 7.3 as `mat_load.load` finds in those before it. `told`: "lost", why vectors cannot be read.
+
+    Raises:
+        Exception: of any kind, if the file is damaged.
+    """
+    import h5py  # lazily: only this format needs it
+
+    lost: list[list[str]] = []
+    structures: dict[str, dict[str, np.ndarray]] = {"": {}}
+    with h5py.File(path, "r") as file:
+        for name, one in _members(file, "", lost):
+            if isinstance(one, h5py.Dataset):
+                structures[""] |= _vector(name, one, name, lost)
+            elif _class(one) == "struct":
+                structures[name] = {}
+                for field, inner in _members(one, f"{name}.", lost):
+                    if isinstance(inner, h5py.Dataset):
+                        structures[name] |= _vector(field, inner, f"{name}.{field}", lost)
+    return Loaded(structures, {"lost": lost})
+
+
+def _members(group: Any, path: str, lost: list[list[str]]) -> Iterator[tuple[str, Any]]:
+    """What MATLAB has put there by name; its own books have a # in theirs, and a link may lead to another file."""
+    import h5py
+
+    for name in group:
+        try:
+            if not name.startswith("#") and isinstance(group.get(name, getlink=True), h5py.HardLink):
+                yield name, group[name]
+        except Exception as error:
+            lost.append([f"{path}{name}", reason(error)])
+
+
+def _vector(name: str, dataset: Any, path: str, lost: list[list[str]]) -> dict[str, np.ndarray]:
+    """The dataset by its name, if it is a vector of numbers."""
+    try:
+        kind = _class(dataset)
+        if kind not in _NUMBERS or "MATLAB_empty" in dataset.attrs or dataset.external or dataset.is_virtual:
+            return {}
+        value = np.squeeze(dataset[()])
+    except Exception as error:
+        lost.append([path, reason(error)])
+        return {}
+    return {name: value} if value.ndim == 1 and value.dtype.kind in "biuf" else {}
+
+
+def _class(one: Any) -> str:
+    """What MATLAB calls its type."""
+    return bytes(one.attrs.get("MATLAB_class", b"")).decode()
