@@ -56,7 +56,7 @@ class Joining:
         tables = self._late.without(tables, self.handed_s + (self.known.zero_s or 0.0))
         both = joined(self.before, tables)
         new = {name for name, source in tables.items() if len(source.frame)}
-        log = self._log(both, new) if new or last else None
+        log = self._log(both, new, last) if new or last else None
         if log is None:
             self.before = both
             return
@@ -93,7 +93,7 @@ class Joining:
         else:
             self.more += 1
 
-    def _log(self, tables: Tables, new: set[str]) -> Log | None:
+    def _log(self, tables: Tables, new: set[str], last: bool) -> Log | None:
         """What is there of the described log, the sensors of absent tables without a value; None if nothing is.
 
         `new`: the tables that have brought something since the part before.
@@ -113,7 +113,9 @@ class Joining:
         present = replace(self.known, sensors=tuple(s for s in self.known.sensors if s.file in there))
         fastest = min(able or streams, key=lambda one: one.period_s * (_STAYS if one.name == self.ticks else 1))
         self.ticks = fastest.name
-        clock = put_on_one_clock(streams, ticks=fastest)
+        clock = put_on_one_clock(
+            streams, ticks=fastest, ends=(self.known.zero_s is None or not np.isfinite(self.seen_s), last)
+        )
         if self.known.zero_s is None:  # the first part's beginning is that of all
             self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
             present = replace(present, zero_s=self.known.zero_s)

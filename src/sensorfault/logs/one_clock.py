@@ -26,11 +26,17 @@ class OneClock:
     notes: tuple[str, ...] = ()
 
 
-def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", ticks: Stream | None = None) -> OneClock:
+def put_on_one_clock(
+    streams: list[Stream],
+    resample: Resample = "hold",
+    ticks: Stream | None = None,
+    ends: tuple[bool, bool] = (True, True),
+) -> OneClock:
     """Put every stream on the ticks of the fastest, unless others are named.
 
     A slower stream's row goes to the first tick at or after its own time; of two rows for one tick the later stays.
-    Where the fastest file has a gap, ticks of its usual period go on, so that its silence can be noticed.
+    Where the fastest file has a gap, ticks of its usual period go on, so that its silence can be noticed. `ends`:
+    whether these are the streams' first rows, and their last; else what lies beyond the ticks is no loss.
     """
     if len(streams) == 1 and resample == "hold":
         (only,) = streams
@@ -43,7 +49,7 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", ticks: 
         if resample == "linear":
             value, fresh = _interpolated(at, time, stream)
         else:
-            value, fresh, note = _placed(at, time, stream, fastest)
+            value, fresh, note = _placed(at, time, stream, fastest, ends)
             notes += note
         values.append(value)
         marks.append(fresh)
@@ -72,16 +78,16 @@ def _filled(fastest: Stream) -> tuple[np.ndarray, list[str]]:
 
 
 def _placed(
-    ticks: np.ndarray, time: np.ndarray, stream: Stream, fastest: Stream
+    ticks: np.ndarray, time: np.ndarray, stream: Stream, fastest: Stream, ends: tuple[bool, bool]
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Each row on the first tick at or after its time."""
     shape = (len(ticks), stream.value.shape[1])
     value, fresh = np.full(shape, np.nan), np.zeros(shape, bool)
     # The fastest's own rows lie on ticks exactly; what came long before the first tick is no news at it.
     tick = np.searchsorted(ticks, time - SAME_S, side="left")
-    inside = (tick < len(ticks)) & (time > ticks[0] - stream.period_s)
-    rows = np.flatnonzero(inside)
-    outside = len(time) - len(rows)
+    early, late = time <= ticks[0] - (stream.period_s if ends[0] else SAME_S), tick == len(ticks)
+    rows = np.flatnonzero(~(early | late))
+    outside = int((early & ends[0] | late & ends[1]).sum())
     last = np.append(tick[rows][1:] != tick[rows][:-1], True) if len(rows) else np.zeros(0, bool)
     later = rows[last]
     value[tick[later]], fresh[tick[later]] = stream.value[later], stream.fresh[later]
