@@ -12,6 +12,7 @@ from logs import written_ardupilot, written_dataflash, written_ulog
 from logs.small_parts import small_parts
 from sensorfault.logs import Log, LogError, guess, read
 from sensorfault.logs.parts import read_parts
+from sensorfault.logs.readers import dataflash_pieces
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Tables
 
@@ -51,7 +52,8 @@ def assert_whole(path: Path) -> list[str]:
 
 @pytest.mark.parametrize("suffix", CONTENT)
 def test_parts_are_the_whole(tmp_path: Path, suffix: str) -> None:
-    assert_whole(put(tmp_path, suffix, CONTENT[suffix]))
+    path = put(tmp_path, suffix, CONTENT[suffix])
+    assert set(assert_whole(path)) == set(read(path).notes)
 
 
 @pytest.mark.parametrize("suffix", CONTENT)
@@ -108,6 +110,23 @@ def test_kinds_that_come_later_and_units_are_those_of_the_whole(tmp_path: Path) 
     path = put(tmp_path, ".bin", CONTENT[".bin"] + late)
     assert read_tables(path)["LATE"].frame["Value"].to_list() == list(range(50))
     assert_whole(path)
+
+
+def test_what_units_are_is_said_once(tmp_path: Path) -> None:
+    """Later pieces are read with what earlier ones say of their messages, but not as if it were said again."""
+    unit = b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", 141, 76, b"UNIT", b"QbZ", b"TimeUS,Id,Label")
+    unit += b"".join(b"\xa3\x95\x8d" + struct.pack("<Qb64s", k, 100 + k, b"m/s") for k in range(3))
+    tables = read_tables(put(tmp_path, ".bin", unit + CONTENT[".bin"]))
+    assert tables["UNIT"].frame["Id"].to_list() == [100, 101, 102]
+    assert tables["IMU"].damage == ()
+
+
+@pytest.mark.parametrize("before", range(6))
+def test_a_message_across_the_edge_of_a_piece_behind_rubbish(tmp_path: Path, before: int) -> None:
+    content = CONTENT[".bin"]
+    at = content.index(b"\xa3\x95\x84", 4000)
+    path = put(tmp_path, ".bin", content[:at] + bytes(dataflash_pieces.PIECE_BYTES - at - before) + content[at:])
+    assert len(read_tables(path)["IMU"].frame) == 1000
 
 
 def test_a_description_that_nobody_understands_ends_the_log_there(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sensorfault.logs.clock import GAP
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.late import Late
 from sensorfault.logs.one_clock import Piece, put_on_one_clock
@@ -62,9 +63,7 @@ class Joining:
             self.before = both
             return
         self.before = {name: _recent(one, tables.get(name)) for name, one in both.items()}
-        end_s = float(log.time[-1])
-        if end_s <= self.seen_s:  # what was seen last was a wild reading
-            self.seen_s = self.handed_s
+        end_s = _settled_s(log)
         begin_s = max(self.seen_s, float(log.time[0]))
         self.seen_s = end_s
         until = np.inf if last else end_s - min(MARGIN_S, (end_s - begin_s) / 2)
@@ -122,6 +121,12 @@ class Joining:
             present = replace(present, zero_s=self.known.zero_s)
         notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
         return _widened(log_of(present, streams, clock, notes, ()), self.known)
+
+
+def _settled_s(log: Log) -> float:
+    """The last tick; the one before it, where it lies so far ahead that it may be a wild reading."""
+    wild = len(log) > 2 and log.time[-1] - log.time[-2] > max(MARGIN_S, GAP * log.period_s)
+    return float(log.time[-2] if wild else log.time[-1])
 
 
 def _recent(both: Source, now: Source | None) -> Source:
