@@ -43,9 +43,11 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     handing, covered = Handing(ask), Covered()
     tables: Tables = {}
     damage: list[Damage] = []
+    odd: dict[str, None] = {}
     try:
         for piece in pieces_of(path):
             covered.take(*_spans(piece))
+            odd |= dict.fromkeys(_odd(piece))
             tables = joined(tables, _tables(path, piece, ask))
             if handing.asked:
                 handing.on(tables)
@@ -60,7 +62,18 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     tables = handing.rest(tables)
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no messages with a time in this DataFlash log; name a log of a whole flight.")
-    return told(tables, (), [*covered.damage(), *(damage or _tail(path, covered.end))])
+    notes = [f"{path.name}: messages described with contradictions left out: {', '.join(odd)}."] if odd else []
+    return told(tables, notes, [*covered.damage(), *(damage or _tail(path, covered.end))])
+
+
+def _odd(piece: "Piece") -> list[str]:
+    """Kinds of messages with a time that cannot be read."""
+    forms = [piece.formats[number] for number, start in piece.starts.items() if len(start)]
+    return [f"{form.name!r}" for form in forms if _clock(form) is not None and not _is_sound(form)]
+
+
+def _clock(form: Any) -> tuple[str, str] | None:
+    return next(((name, unit) for name, unit in CLOCKS if name in form.columns), None)
 
 
 def _spans(piece: "Piece") -> tuple[np.ndarray, np.ndarray]:
@@ -76,17 +89,18 @@ def _tables(path: Path, piece: "Piece", ask: Ask) -> Tables:
     tables: Tables = {}
     for number, start in piece.starts.items():
         form = piece.formats[number]
-        clock = next(((name, unit) for name, unit in CLOCKS if name in form.columns), None)
-        if clock is not None and len(start) and _is_whole(form) and (kinds is None or form.name in kinds):
+        clock = _clock(form)
+        if clock is not None and len(start) and (kinds is None or form.name in kinds) and _is_sound(form):
             messages = sliding_window_view(piece.content, form.len - _HEAD_BYTES)[start + _HEAD_BYTES]
             tables |= _by_instance(path, form, messages, clock)
     return {name: one for name, one in tables.items() if ask.wants(name)}
 
 
-def _is_whole(form: Any) -> bool:
-    """Whether the kind of message is described without contradiction."""
+def _is_sound(form: Any) -> bool:
+    """Whether a kind of message is described without contradiction, in words."""
     fits = np.dtype([(str(i), _PLAIN[c]) for i, c in enumerate(form.format)]).itemsize == form.len - _HEAD_BYTES
-    return fits and len(form.columns) == len(form.format) == len(set(form.columns) - {""})
+    words = all(name.isprintable() for name in (form.name, *form.columns))
+    return fits and words and len(form.columns) == len(form.format) == len(set(form.columns) - {""})
 
 
 def _by_instance(path: Path, form: Any, messages: np.ndarray, clock: tuple[str, str]) -> Tables:
