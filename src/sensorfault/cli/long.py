@@ -60,6 +60,7 @@ def detect(
     from sensorfault.methods.fit import fit
     from sensorfault.store import load
 
+    work.check_learn(wanted.learn)
     sketches = list[Sketch]()
 
     def see(part: "Detection", share: float) -> None:

@@ -89,8 +89,21 @@ class Ready:
     sentences: tuple[str, ...]
 
 
+def check_learn(learn: float) -> None:
+    """Before the work: the share of the log to fit on.
+
+    Raises:
+        LogError: it is none.
+    """
+    from sensorfault.logs import LogError
+
+    if not 0.05 <= learn <= 0.95:  # click takes NaN for a number
+        raise LogError(f"--learn is {learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
+
+
 def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: int) -> Ready:
     """Load the model; without one, fit on the log's own beginning and judge the rest."""
+    check_learn(learn)
     if model_path is not None:
         from sensorfault.store import load
 
