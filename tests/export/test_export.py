@@ -72,7 +72,7 @@ def test_annotations_beside_the_recording(tmp_path: Path) -> None:
         if topic == "/sensorfault/states"
     ]
     at = [round(time, 3) for time, _ in states]
-    assert at == [0, 1, 1.5, 2, 2, 2, 3, 3.5]
+    assert at == [0, 1, 1.5, 2, 2, 2, 3, 3.5, 4.9]
     quiet = {"gyro": "ok", "gnss": "ok", "motion": "ok", "unknown": "ok"}
     assert states[0][1] == quiet
     assert states[1][1] == {**quiet, "gyro": "bias"}
@@ -115,7 +115,7 @@ def test_a_recording_is_copied_with_all_that_it_holds(tmp_path: Path) -> None:
         summary = make_reader(file).get_summary()
     assert summary is not None
     assert summary.statistics is not None
-    assert summary.statistics.message_count == 100 + 7 + 8
+    assert summary.statistics.message_count == 100 + 7 + 9
     spans = [(chunk.message_start_time, chunk.message_end_time) for chunk in summary.chunk_indexes]
     assert all(end <= start for (_, end), (start, _) in pairwise(spans))  # a viewer that seeks loads one
 

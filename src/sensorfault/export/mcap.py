@@ -23,7 +23,8 @@ def write_mcap(events: Sequence[Event], log: Log, path: Path, source: Path | Non
     """All that `source` holds, as far as it is whole, and two topics beside it, each message at its time.
 
     `/sensorfault/events` (foxglove.Log) for the log panel; `/sensorfault/states` (JSON) has for each sensor, and for
-    the vehicle's motion, `ok` or the kind of fault, at the beginning and whenever one changes: for state transitions.
+    the vehicle's motion, `ok` or the kind of fault, at the beginning, whenever one changes, and at the end, where
+    viewers would else let their lines break off: for state transitions.
     """
     from mcap.writer import Writer
 
@@ -60,11 +61,15 @@ class _Own:
 
 def _said(events: Sequence[Event], log: Log) -> Iterator[tuple[int, str, bytes]]:
     """Time [ns], topic and content of each message."""
-    start = round((log.epoch_s or 0.0) * NS) + round(float(log.time[0]) * NS)
-    yield start, STATES, json.dumps(_states(log, ())).encode()
-    for moment in moments(events, log):
+    zero = round((log.epoch_s or 0.0) * NS)
+    first, last = (zero + round(float(log.time[i]) * NS) for i in (0, -1))
+    yield first, STATES, _states(log, ())
+    told = moments(events, log)
+    for moment in told:
         yield moment.time_ns, EVENTS, _text(moment)
-        yield moment.time_ns, STATES, json.dumps(_states(log, moment.open)).encode()
+        yield moment.time_ns, STATES, _states(log, moment.open)
+    if last > max((moment.time_ns for moment in told), default=first):
+        yield last, STATES, _states(log, told[-1].open if told else ())
 
 
 def _text(moment: Moment) -> bytes:
@@ -80,14 +85,18 @@ def _text(moment: Moment) -> bytes:
     return bytes(message.encode())
 
 
-def _states(log: Log, open: Sequence[Event]) -> dict[str, str]:
+def _states(log: Log, open: Sequence[Event]) -> bytes:
     """Sensor -> `ok` or the kind of the first of its faults that lasts."""
-    state = {**{sensor.name: _OK for sensor in log.sensors}, "motion": _OK, "unknown": _OK}
+    state = dict.fromkeys(_names(log), _OK)
     for event in reversed(open):
         state["motion" if event.subject == "motion" else event.sensor or "unknown"] = event.kind
-    return state
+    return json.dumps(state).encode()
+
+
+def _names(log: Log) -> list[str]:
+    return [*(sensor.name for sensor in log.sensors), "motion", "unknown"]
 
 
 def _schema(log: Log) -> bytes:
-    fields = {name: {"type": "string"} for name in _states(log, ())}
+    fields = {name: {"type": "string"} for name in _names(log)}
     return json.dumps({"type": "object", "properties": fields}).encode()
