@@ -2,13 +2,17 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import fitted
+from sensorfault import long_log
+from sensorfault.detection import Detection
 from sensorfault.detector import detect
-from sensorfault.logs import read, write
+from sensorfault.logs import Log, LogError, read, write
 from sensorfault.logs.readers import csv
 from sensorfault.long_log import detect_long
+from sensorfault.model import Model
 
 
 def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -17,7 +21,8 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.M
     write(fitted.lying().log, path)
     whole = detect(fitted.model(), read(path))
     heard: list[float] = []
-    told = detect_long(fitted.model(), path, tell=heard.append)
+    seen: list[tuple[Detection, float]] = []
+    told = detect_long(fitted.model(), path, tell=heard.append, see=lambda part, share: seen.append((part, share)))
     assert len(heard) > 5
     assert told.rows == len(whole.log)
     assert told.end_s == pytest.approx(whole.log.time[-1])
@@ -27,3 +32,36 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.M
         assert mine.start_s == pytest.approx(theirs.start_s, abs=1e-6)
         assert mine.end_s == pytest.approx(theirs.end_s, abs=1e-6)
         assert mine.peak_score == pytest.approx(theirs.peak_score)
+    assert sum(share for _, share in seen) == pytest.approx(1)
+    assert max(share for _, share in seen) < 0.5
+    assert seen[-1][0].events == told.events
+    for name in ("channel", "sensor", "sample", "motion", "repaired"):
+        parts = np.concatenate([getattr(part, name) for part, _ in seen])
+        np.testing.assert_allclose(parts, getattr(whole, name), atol=1e-9)
+
+
+def test_without_a_model_one_is_fitted_on_the_beginning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 100_000)
+    path = tmp_path / "drive.csv"
+    write(fitted.lying().log, path)
+    given: list[Log] = []
+
+    def fit(log: Log) -> Model:
+        given.append(log)
+        return fitted.model()
+
+    whole = read(path)
+    told = detect_long(fit, path, learn=0.2)
+    (early,) = given
+    np.testing.assert_array_equal(early.value, whole.value[: len(early)])
+    assert told.fitted_on_s == pytest.approx((whole.time[0], early.time[-1]))
+    assert 0.1 < len(early) / len(whole) < 0.3
+    assert told.log.time[0] == pytest.approx(whole.time[len(early)])
+    assert (told.rows, told.end_s) == (len(whole) - len(early), pytest.approx(whole.time[-1]))
+    assert told.events
+    monkeypatch.setattr(long_log, "EARLY", 1000)
+    detect_long(fit, path, learn=0.9)
+    assert len(given[1]) < 0.2 * len(whole)
+    monkeypatch.undo()
+    with pytest.raises(LogError, match="too short to be fitted on"):
+        detect_long(fit, path)

@@ -1,5 +1,6 @@
 """What a fitted monitor found in a log."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,6 +8,9 @@ from jaxtyping import Float, Int8
 
 from sensorfault.events import Event
 from sensorfault.logs.table import Log
+from sensorfault.model import Model
+from sensorfault.replay import Replayed
+from sensorfault.types import FAULT
 
 
 @dataclass(frozen=True)
@@ -58,3 +62,30 @@ class Detection:
             sensor=self.sensor[:, mine],
             repaired=self.repaired[:, kept],
         )
+
+
+def detected(model: Model, log: Log, told: Replayed, events: Iterable[Event]) -> Detection:
+    """What a model's monitor said of every row of a log it has taken, and the events in it."""
+    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(told.channel) == FAULT)
+    lost = ~np.asarray(told.believed) & doubtful
+    return Detection(
+        log=log,
+        method=model.method,
+        watched=model.watched,
+        channel=np.asarray(told.channel),
+        sensor=np.asarray(told.sensor),
+        sample=np.asarray(told.sample),
+        motion=np.asarray(told.motion),
+        repaired=np.where(lost, np.nan, np.asarray(told.value)),
+        traces=_traces(model, told),
+        events=tuple(events),
+    )
+
+
+def _traces(model: Model, told: Replayed) -> tuple[Trace, ...]:
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
+    return tuple(
+        Trace(name, channel, score[:, k], limit[:, k])
+        for k, (name, channel) in enumerate(model.tests)
+        if np.isfinite(score[:, k]).any()
+    )

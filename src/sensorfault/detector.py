@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.detection import Detection, Trace
+from sensorfault.detection import Detection, detected
 from sensorfault.events import Event
 from sensorfault.follow import Follower, watch_of
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.table import Log
 from sensorfault.model import Model
-from sensorfault.replay import Progress, Replayed, replay_log
+from sensorfault.replay import Progress, replay_log
 from sensorfault.run import Now, Stepper, nothing_yet
 from sensorfault.tracker import Tracker
 from sensorfault.types import FAULT
@@ -27,21 +27,7 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
     told = replay_log(model.monitor, log, progress)
     follower = Follower(model)
     follower.take(log, told)
-    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(told.channel) == FAULT)
-    lost = ~np.asarray(told.believed) & doubtful
-    repaired = np.where(lost, np.nan, np.asarray(told.value))
-    return Detection(
-        log=log,
-        method=model.method,
-        watched=model.watched,
-        channel=np.asarray(told.channel),
-        sensor=np.asarray(told.sensor),
-        sample=np.asarray(told.sample),
-        motion=np.asarray(told.motion),
-        repaired=repaired,
-        traces=_traces(model, told),
-        events=tuple(follower.events),
-    )
+    return detected(model, log, told, follower.events)
 
 
 class Live:
@@ -118,12 +104,3 @@ class Live:
             fresh[channels] = (value[channels] != self._last[channels]).any()
         self._last = np.where(np.isfinite(value), value, self._last)
         return fresh
-
-
-def _traces(model: Model, told: Replayed) -> tuple[Trace, ...]:
-    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
-    return tuple(
-        Trace(name, channel, score[:, k], limit[:, k])
-        for k, (name, channel) in enumerate(model.tests)
-        if np.isfinite(score[:, k]).any()
-    )

@@ -33,7 +33,6 @@ def test_a_long_file_is_read_by_parts_where_it_can_be(
     monkeypatch.setattr(beginning, "LONG", 1000)
     assert "part by part" in run("detect", drive, "--model", car).err
     assert "part by part" not in run("detect", drive, "--model", car, "--whole").err
-    assert "part by part" not in run("detect", drive, "--model", car, "--report", "page.html").err
 
 
 def test_by_parts_a_log_holds_the_same(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,15 +46,33 @@ def test_by_parts_a_log_holds_the_same(run: Run, drive: Path, monkeypatch: pytes
     assert parts == whole
 
 
-def test_what_parts_cannot_do_is_a_sentence(run: Run, drive: Path, car: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for words, said in (
-        (("--by-parts",), "needs a --model"),
-        (("--by-parts", "--model", car, "--report", "page.html"), "a report needs the whole log"),
-    ):
-        answer = run("detect", drive, *words)
-        assert answer.code == 2
-        assert said in answer.err
-        assert not Path("page.html").exists()
+def test_a_page_by_parts(run: Run, drive: Path, car: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
+    run("inject", drive, "--fault", "bias:accelerometer.x:40:5:9", "--out", "lying.csv")
+    for verb, way in (("report", ()), ("detect", ("--report", "report.html"))):
+        said = run(verb, "lying.csv", "--model", car, "--by-parts", *way)
+        assert said.code == 0, said.err
+        page = Path("report.html").read_text()
+        assert "4,000 samples" in page
+        assert "Limits: fitted by relative-conditioning on drive" in page
+        Path("report.html").unlink()
+
+
+def test_without_a_model_it_is_fitted_on_the_beginning(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
+    run("inject", drive, "--fault", "bias:accelerometer.x:60:5:9", "--out", "lying.csv")
+    said = run("detect", "lying.csv", "--by-parts", "--method", "pca", "--json", "-", "--report", "page.html")
+    assert "pca was fitted on the log's own beginning, 0:00.00 to" in said.err
+    assert "taken as healthy" in Path("page.html").read_text()
+    told = json.loads(said.out)
+    assert told["fitted_on_s"][1] < told["judged_s"][0] < 60
+    assert ("accelerometer", "bias") in [(event["sensor"], event["kind"]) for event in told["events"]]
+
+
+def test_what_parts_cannot_do_is_a_sentence(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    answer = run("detect", drive, "--by-parts")
+    assert (answer.code, answer.out) == (2, "")
+    assert "too short to be fitted on" in answer.err
     monkeypatch.setattr(os, "sysconf", {"SC_PHYS_PAGES": 2, "SC_PAGE_SIZE": 4096}.get)
     answer = run("detect", drive)
     assert answer.code == 2

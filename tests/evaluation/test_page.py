@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 
 from sensorfault.detection import Detection, Trace
-from sensorfault.evaluation.page import figures, write_page
+from sensorfault.evaluation import page
+from sensorfault.evaluation.page import write_page
 from sensorfault.evaluation.page_lines import extremes, line, near, runs
-from sensorfault.evaluation.page_signals import replaced, stale
+from sensorfault.evaluation.page_sketch import Sketch, replaced, stale
 from sensorfault.evaluation.page_words import clock, found, result
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
@@ -110,6 +111,10 @@ def drive(seconds: float = 60, name: str = "drive", gyro: str = "gyro") -> Detec
     return Detection(
         log, "elm", (True, True, False), channel, sensor, sensor.max(axis=1), still(rows), repaired, traces, events
     )
+
+
+def figures(detection: Detection, truth: tuple[Fault, ...] = ()) -> dict:
+    return page.figures(Sketch.of(detection), truth)
 
 
 def still(rows: int) -> np.ndarray:
@@ -229,6 +234,46 @@ def test_stand_in_is_tied_to_the_samples_beside_it():
     assert replaced(detection, 1)[500] == detection.repaired[500, 1]
 
 
+def test_gathered_part_by_part_it_is_the_same():
+    detection = drive()
+    detection.log.value[1210:1510, 1] = np.nan  # a gap over an edge of parts
+    detection.log.fresh[995:1015, 2] = False  # held for too long, over another
+    whole, parts = Sketch.of(detection), None
+    for start in range(0, 3000, 500):
+        rows = slice(start, start + 500)
+        part = replace(
+            detection,
+            log=detection.log._rows(rows),
+            channel=detection.channel[rows],
+            sensor=detection.sensor[rows],
+            sample=detection.sample[rows],
+            motion=detection.motion[rows],
+            repaired=detection.repaired[rows],
+            traces=tuple(replace(t, score=t.score[rows], limit=t.limit[rows]) for t in detection.traces),
+            events=tuple(event for event in detection.events if event.start_s < (start + 500) / RATE),
+        )
+        parts = parts or Sketch(part)
+        parts.take(part, 1 / 6)
+    assert (parts.rows, parts.span, parts.events) == (whole.rows, whole.span, whole.events)
+    assert [(name, lane.start, lane.verdict) for name, lane in parts.lanes] == [
+        (name, lane.start, lane.verdict) for name, lane in whole.lanes
+    ]
+    for mine, theirs in zip(parts.channels, whole.channels, strict=True):
+        tied = np.isin(theirs.stand_in.x, mine.stand_in.x, invert=True)
+        assert tied.sum() <= 2  # but for the sample before or after, where that is in another part
+        for name in ("said", "held"):
+            np.testing.assert_array_equal(getattr(mine, name).x, getattr(theirs, name).x)
+            np.testing.assert_array_equal(getattr(mine, name).y, getattr(theirs, name).y)
+    assert [test.spans_much for test in parts.tests.values()] == [test.spans_much for test in whole.tests.values()]
+
+
+def test_a_short_part_has_few_points():
+    detection = drive(6000)
+    sketch = Sketch(detection)
+    sketch.take(replace(detection, events=()), 0.001)
+    assert sketch.channels[0].said.x.size < 100
+
+
 # What the page says
 
 
@@ -268,7 +313,7 @@ def test_events_without_a_sensor_are_told_apart(tmp_path):
     events = (nameless, replace(nameless, subject="motion"), replace(nameless, kind="miss"))
     detection = replace(drive(), events=events)
     said = "1 fault, 1 of them not laid to one sensor, 1 implausible motion, 1 gap in the log; 1 sensor watched"
-    assert result(detection).startswith(said)
+    assert result(Sketch.of(detection)).startswith(said)
     rows = written(tmp_path, detection).rows
     assert [row[3] for row in rows] == ["unknown which", "vehicle motion", "all (gap in the log)"]
     assert [row[6] for row in rows] == ["5 / 1", "5 / 1", "5 / 1 s silent"]

@@ -12,8 +12,10 @@ import numpy as np
 
 from fuzz.mutate import mutated
 from fuzz.small import SMALL
-from sensorfault.logs import LogError, read
-from sensorfault.logs.readers.formats import read_tables
+from logs.small_parts import small_parts
+from sensorfault.logs import Log, LogError, guess, read
+from sensorfault.logs.parts import read_parts
+from sensorfault.logs.readers.formats import format_of, read_tables
 
 LONGEST_S, PATIENCE_S = 2.0, 20.0  # of this process's own time; by the clock, on a machine that has other work
 MOST_BYTES = 1 << 30  # more than before: no file here is larger than 100 kB
@@ -30,6 +32,8 @@ class Fuzzed:
         self.title, self.folder = title, folder
         self.sound = SMALL[title](folder)
         self.content = self.sound.read_bytes()
+        form = format_of(self.sound)
+        self.vehicle = guess(self.sound) if form is not None and form.parts else None
         self.seconds, self.read, self.refused = 0.0, 0, 0
 
     def damaged(self, number: int) -> bytes:
@@ -44,7 +48,7 @@ class Fuzzed:
         try:
             with _limits(), warnings.catch_warnings():
                 warnings.simplefilter("error")
-                self._read(whole=number % 4 == 0)
+                self._read(number % 4)
                 self.read += 1
         except LogError as error:
             self.refused += 1
@@ -59,14 +63,22 @@ class Fuzzed:
         self.sound.write_bytes(self.content)
         return wrong and f"{self.title}, damage {number}: {wrong}"
 
-    def _read(self, whole: bool) -> None:
-        """The reader alone; or all the way to a log."""
-        if not whole:
+    def _read(self, turn: int) -> None:
+        """The reader alone; or all the way to a log, at once or part by part."""
+        if turn == 0:
+            _check(read(self.sound))
+        elif turn == 2 and self.vehicle is not None:
+            parts: list[Log] = []
+            with small_parts(100):
+                read_parts(self.sound, parts.append, self.vehicle)
+            _check(*parts)
+        else:
             read_tables(self.sound)
-            return
-        log = read(self.sound)
-        assert (np.diff(log.time) > 0).all(), "time does not rise"
-        assert not (log.fresh & ~np.isfinite(log.value)).any(), "no value is called new"
+
+
+def _check(*parts: Log) -> None:
+    assert (np.diff(np.concatenate([part.time for part in parts])) > 0).all(), "time does not rise"
+    assert not any((part.fresh & ~np.isfinite(part.value)).any() for part in parts), "no value is called new"
 
 
 def _one_sentence(text: str) -> bool:

@@ -60,6 +60,15 @@ def test_libRSF_ranges_agree_with_truth_once_the_earth_turns(real_data: Path) ->
     assert np.nanmedian(residuals(log, place.value, "G")) <= 8.0
 
 
+def test_libRSF_with_the_reference_receiver(real_data: Path) -> None:
+    folder = real_data / POTSDAM
+    log, place = (read(folder / f"Berlin_Potsdamer_Platz_RTK_{what}.txt") for what in ("Input", "GT"))
+    lines = [line.split() for line in (folder / "Berlin_Potsdamer_Platz_RTK_Input.txt").read_text().splitlines()]
+    at = [float(line[1]) for line in lines]
+    facts(log, len({*at}), max(at) - min(at), 0.2)
+    np.testing.assert_allclose(place.value, truth(folder / "Berlin_Potsdamer_Platz_RTK_GT.txt")[:, 1:])
+
+
 def test_rinex_2_ranges_agree_with_truth_by_the_broadcast_orbits(real_data: Path) -> None:
     folder = real_data / POTSDAM
     log = read(folder / "Berlin_Potsdamer_Platz.obs")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pyulog import ULog
 
 from logs.written_ulog import FORMATS, HEAD, flight, head, message
 from sensorfault.logs import LogError, VehicleFile, guess, read
@@ -99,4 +100,7 @@ def test_the_sample_of_pyulog(real_data: Path) -> None:
     assert np.nanmean(log.value[:, log.index("accelerometer.z")]) == pytest.approx(-9.62, abs=0.05)
     attitude = log.value[log.fresh[:, log.index("attitude.roll")]]
     assert len(attitude) == 6460
+    topic = ULog(str(real_data / "uav" / "pyulog_sample" / "sample.ulg")).get_dataset("sensor_combined").data
+    gyro = log.value[log.fresh[:, log.index("gyro.x")], log.index("gyro.x")]
+    np.testing.assert_array_equal(gyro[[0, -1]], topic["gyro_rad[0]"][[0, -1]].astype(float))
     assert log.damage == ()

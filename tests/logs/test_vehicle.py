@@ -1,12 +1,16 @@
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sensorfault.logs import LogError, VehicleFile, read
+import fitted
+from sensorfault.logs import Log, LogError, VehicleFile, read, write
 from sensorfault.logs import vehicle as vehicle_module
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
+from sensorfault.logs.parts import read_parts
 from sensorfault.logs.units import UNITS
 
 GOOD = """
@@ -133,7 +137,11 @@ def test_which_vehicle_file_is_taken(tmp_path: Path) -> None:
     assert read(tmp_path).name == "beside"
     (tmp_path / "drive.vehicle.toml").write_text(GOOD.replace("car", "own"))
     assert read(tmp_path / "drive.csv").name == "own"
-    assert read(tmp_path / "drive.csv", tmp_path / "vehicle.toml").name == "beside"
+    other = read(tmp_path / "drive.csv", tmp_path / "vehicle.toml")
+    assert (other.name, other.notes) == (
+        "drive",
+        read(tmp_path / "other.csv").notes,
+    )  # it does well, but is not called so
     assert any("guess" in note for note in read(tmp_path / "other.csv", None).notes) is False
 
 
@@ -162,3 +170,14 @@ def test_a_sensor_says_watch_for_all_of_its_channels() -> None:
     none = VehicleFile.parse(text.replace("watch = true", "watch = false"))
     assert none.to_toml().count("watch") == 1
     assert VehicleFile.parse(none.to_toml()) == none
+
+
+def test_a_log_that_another_logs_file_describes_has_its_own_name(tmp_path: Path) -> None:
+    rig = fitted.rig().between(end_s=5.0)
+    vehicle = write(replace(rig, name="rig"), tmp_path / "first.csv")
+    shutil.copy(tmp_path / "first.csv", tmp_path / "second.csv")
+    assert read(tmp_path / "first.csv").name == "rig"
+    assert read(tmp_path / "second.csv", vehicle).name == "second"
+    parts: list[Log] = []
+    read_parts(tmp_path / "second.csv", parts.append, vehicle)
+    assert parts[0].name == "second"

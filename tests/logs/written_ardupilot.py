@@ -59,7 +59,9 @@ def tlog(seconds: float = 10.0, v1: bool = False) -> bytes:
         if k % 5 == 0:
             place = (round(1e7 * (48 + 1e-5 * t)), round(1e7 * (11 + 1e-5 * t)), round(1000 * (100 + t)))
             written += put(
-                us, own, mav.MAVLink_gps_raw_int_message(ms * 1000, 3, *place, 80, 90, 130 + k % 7, 900 + 10 * k, 12)
+                us,
+                own,
+                mav.MAVLink_gps_raw_int_message(ms * 1000, 3, *place, 80, 90, 130 + k % 7, (900 + 10 * k) % 36000, 12),
             )
         if k % 10 == 0:
             written += put(us, ground, mav.MAVLink_heartbeat_message(6, 8, 0, k % 3, 4, 3))

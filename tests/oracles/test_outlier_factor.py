@@ -55,11 +55,37 @@ def test_equal_points_are_treated_as_scikit_learn_does(features: int) -> None:
     np.testing.assert_allclose(factor(fit_history(points, 0), asked), peer(points, 20, asked), rtol=1e-6)
 
 
-def test_on_a_grid_exactly_k_of_those_equally_far_count() -> None:
+def test_between_two_clumps_far_apart_the_nearest_are_still_told_apart() -> None:
+    rng = np.random.default_rng(10)
+    points = rng.standard_normal((600, 3)) + 100 * rng.choice([-1.0, 1.0], (600, 1))
+    asked = np.concatenate([10 * rng.standard_normal((200, 3)), points[:50] + 100])
+    np.testing.assert_allclose(factor(fit_history(points, 0), asked), peer(points, 20, asked), rtol=1e-6)
+
+
+@pytest.mark.parametrize("count", [21, 1024, 1500])
+def test_histories_of_other_lengths(count: int) -> None:
+    rng = np.random.default_rng(count)
+    points, asked = rng.standard_normal((count, 3)), rng.standard_normal((50, 3))
+    told = factor(fit_history(points, 0, history=count), asked)
+    np.testing.assert_allclose(told, peer(points, 20, asked), rtol=1e-6)
+
+
+@pytest.mark.parametrize("features", [1, 3])
+def test_on_a_grid_exactly_k_of_those_equally_far_count(features: int) -> None:
     """Which of them is scikit-learn's secret, so the grid is one on which it makes no difference."""
-    points = np.arange(40.0)[:, None]
-    asked = np.array([[20.0], [19.5]])
+    points = np.arange(40.0)[:, None] * np.ones(features)
+    asked = np.array([[20.0], [19.5]]) * np.ones(features)
     np.testing.assert_allclose(factor(fit_history(points, 0, k=3), asked), peer(points, 3, asked), rtol=1e-6)
+
+
+@pytest.mark.parametrize("features", [1, 3])
+def test_of_what_is_no_number_nothing_is_told(features: int) -> None:
+    """Nor is it infinitely far: where nothing is known nothing is blamed, and nothing cleared."""
+    asked = np.full((2, features), 0.1)
+    asked[0, -1] = np.nan
+    told = np.asarray(factor(history(features), asked))
+    assert np.isnan(told[0])
+    assert np.isfinite(told[1])
 
 
 def test_a_history_is_drawn_by_its_seed_and_knows_what_it_needs() -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import long, options, show, work
 
 
 @click.command("report")
@@ -17,6 +17,7 @@ from sensorfault.cli import options, show, work
 @click.option(
     "--truth", "truth_path", type=click.Path(path_type=Path), help="What 'sensorfault inject' did to the log."
 )
+@options.by_parts_option
 @options.seed_option
 @options.json_option
 def command(
@@ -27,6 +28,7 @@ def command(
     learn: float,
     out: Path,
     truth_path: Path | None,
+    by_parts: bool | None,
     seed: int,
     json_path: str | None,
 ) -> None:
@@ -38,6 +40,11 @@ def command(
 
     work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
     truth = work.read_truth(truth_path) if truth_path else ()
+    if long.by_parts(log, by_parts):
+        told = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), out, truth)
+        show.say(f"{len(told.events)} fault events.")
+        show.write_json(json_path, long.answer(told))
+        return
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)
     found = work.detect(ready.model, ready.judged)

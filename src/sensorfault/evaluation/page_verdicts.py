@@ -3,14 +3,9 @@
 from collections.abc import Sequence
 from html import escape
 
-import numpy as np
-from jaxtyping import Int8
-
-from sensorfault.detection import Detection
 from sensorfault.evaluation.page_figure import FOOT, Json, time_axis
-from sensorfault.evaluation.page_lines import runs
-from sensorfault.evaluation.page_marks import whole
-from sensorfault.evaluation.page_words import MOTION, clock, found
+from sensorfault.evaluation.page_sketch import Sketch
+from sensorfault.evaluation.page_words import clock, found
 from sensorfault.faults.fault import Fault
 from sensorfault.types import FAULT, OK, UNKNOWN, VERDICTS
 
@@ -31,27 +26,12 @@ LOOKS: dict[int, Json] = {
 Bar = tuple[float, float, int, str]  # from, to [s], lane, text
 
 
-def lanes(detection: Detection) -> list[tuple[str, Int8[np.ndarray, " T"]]]:
-    """Name and verdicts of every sensor; of the whole, where it was faulty and nobody could be named; of the motion."""
-    named = [(sensor.name, detection.sensor[:, i]) for i, sensor in enumerate(detection.log.sensors)]
-    nameless = (detection.sample == FAULT) & (detection.sensor.max(axis=1, initial=OK) < FAULT)
-    if nameless.any():
-        named.append(("unknown which", np.where(nameless, FAULT, OK).astype(np.int8)))
-    if (detection.motion != UNKNOWN).any():
-        named.append((MOTION, detection.motion))
-    return named
-
-
-def _bars(detection: Detection) -> list[tuple[int, Bar]]:
-    log = detection.log
+def _bars(sketch: Sketch) -> list[tuple[int, Bar]]:
     bars = []
-    for lane, (name, verdict) in enumerate(lanes(detection)):
-        start, value = runs(verdict)
-        begin = log.time[start]
-        end = np.append(begin[1:], whole(log)[1])
-        for low, high, code in zip(begin.tolist(), end.tolist(), value.tolist(), strict=True):
+    for place, (name, lane) in enumerate(sketch.lanes):
+        for low, high, code in zip(lane.start, [*lane.start[1:], sketch.span[1]], lane.verdict, strict=True):
             text = f"{escape(name)}: {VERDICTS[code]}, {clock(low)} to {clock(high)}"
-            bars.append((code, (low, high, lane, text)))
+            bars.append((code, (low, high, place, text)))
     return bars
 
 
@@ -68,15 +48,15 @@ def _trace(bars: Sequence[Bar], look: Json, lift: float) -> Json:
     }
 
 
-def _truth(detection: Detection, truth: Sequence[Fault]) -> list[Json]:
+def _truth(sketch: Sketch, truth: Sequence[Fault]) -> list[Json]:
     """The injected faults as thin lines above the bands; a missed one hollow, with a cross."""
-    lane = {name: i for i, (name, _) in enumerate(lanes(detection))}
+    lane = {name: i for i, (name, _) in enumerate(sketch.lanes)}
     hits: list[Bar] = []
     misses: list[Bar] = []
     for f in truth:
         if f.sensor not in lane:
             continue
-        hit = found(f, detection.events)
+        hit = found(f, sketch.events)
         text = (
             f"injected {escape(f.kind)} in {escape(f.sensor)} {escape(f.channel or '')}, {'found' if hit else 'missed'}"
         )
@@ -102,17 +82,17 @@ def _label(lane: int, name: str) -> Json:
     return {"text": f"<b>{escape(name)}</b>", "showarrow": False, "borderpad": 0, **place}
 
 
-def verdicts(detection: Detection, truth: Sequence[Fault] = ()) -> Json:
+def verdicts(sketch: Sketch, truth: Sequence[Fault] = ()) -> Json:
     """One band a sensor, top to bottom in the order of the log."""
-    bars = _bars(detection)
+    bars = _bars(sketch)
     data = [_trace([bar for code, bar in bars if code == verdict], look, 0.24) for verdict, look in LOOKS.items()]
-    names = [_label(i, name) for i, (name, _) in enumerate(lanes(detection))]
+    names = [_label(i, name) for i, (name, _) in enumerate(sketch.lanes)]
     layout = {
         "height": LANE * max(1, len(names)) + FOOT + 4,
         "barmode": "overlay",
         "hovermode": "closest",
         "annotations": names,
-        "xaxis": {**time_axis(whole(detection.log)), "showspikes": False},
+        "xaxis": {**time_axis(sketch.span), "showspikes": False},
         "yaxis": {
             "range": [len(names) - 0.5, -0.5],
             "showticklabels": False,
@@ -121,4 +101,4 @@ def verdicts(detection: Detection, truth: Sequence[Fault] = ()) -> Json:
             "zeroline": False,
         },
     }
-    return {"data": data + (_truth(detection, truth) if truth else []), "layout": layout, "fit": False}
+    return {"data": data + (_truth(sketch, truth) if truth else []), "layout": layout, "fit": False}

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from html import escape
 
-from sensorfault.detection import Detection
+from sensorfault.evaluation.page_sketch import MOTION, NAMELESS, Sketch
 from sensorfault.events import Event
 from sensorfault.faults.fault import Fault
 
-MOTION, GAP, NAMELESS = "vehicle motion", "all (gap in the log)", "unknown which"  # where no sensor is named
+GAP = "all (gap in the log)"
 SILENCE_ONLY = "only its silence is noticed"
 
 
@@ -30,10 +30,10 @@ def _count(number: int, what: str) -> str:
     return f"{number or 'no'} {what}{'' if number == 1 else 's'}"
 
 
-def result(detection: Detection) -> str:
+def result(sketch: Sketch) -> str:
     """The finding in one sentence."""
-    kinds = [_accused(event) for event in detection.events]
-    named = {e.sensor for e in detection.events if e.sensor is not None and e.subject == "sensor"}
+    kinds = [_accused(event) for event in sketch.events]
+    named = {e.sensor for e in sketch.events if e.sensor is not None and e.subject == "sensor"}
     faults = sum(accused not in (MOTION, GAP) for accused in kinds)
     text = _count(faults, "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
     if NAMELESS in kinds:
@@ -42,18 +42,18 @@ def result(detection: Detection) -> str:
         text += f", {_count(kinds.count(MOTION), 'implausible motion')}"
     if GAP in kinds:
         text += f", {_count(kinds.count(GAP), 'gap')} in the log"
-    unjudged = blind(detection)
-    text += f"; {_count(len(detection.log.sensors) - len(unjudged), 'sensor')} watched"
+    unjudged = blind(sketch)
+    text += f"; {_count(len(sketch.log.sensors) - len(unjudged), 'sensor')} watched"
     if unjudged:
         silence = SILENCE_ONLY if len(unjudged) == 1 else SILENCE_ONLY.replace("its", "their")
         text += f", {', '.join(unjudged)} not judged ({silence})"
     return escape(text[0].upper() + text[1:] + ".")
 
 
-def blind(detection: Detection) -> list[str]:
+def blind(sketch: Sketch) -> list[str]:
     """Sensors of which no channel is judged."""
-    judged = {c.sensor for c, watched in zip(detection.log.channels, detection.watched, strict=True) if watched}
-    return [sensor.name for sensor in detection.log.sensors if sensor.name not in judged]
+    judged = {c.sensor for c, watched in zip(sketch.log.channels, sketch.watched, strict=True) if watched}
+    return [sensor.name for sensor in sketch.log.sensors if sensor.name not in judged]
 
 
 def _accused(event: Event) -> str:
@@ -62,16 +62,16 @@ def _accused(event: Event) -> str:
     return event.sensor or (GAP if event.kind == "miss" else NAMELESS)
 
 
-def facts(detection: Detection) -> str:
+def facts(sketch: Sketch) -> str:
     """Duration, rate, size, start and method in one line."""
-    log = detection.log
-    items = [f"duration {clock(log.duration_s)}", f"{len(log):,} sample{'' if len(log) == 1 else 's'}"]
-    if len(log) > 1:
-        items[-1] += f" at {1 / log.period_s:.3g} Hz"
+    log, rows = sketch.log, sketch.rows
+    items = [f"duration {clock(sketch.end_s - sketch.start_s)}", f"{rows:,} sample{'' if rows == 1 else 's'}"]
+    if rows > 1:
+        items[-1] += f" at {1 / sketch.period_s:.3g} Hz"
     items += [_count(len(log.sensors), "sensor"), _count(len(log.channels), "channel")]
     if log.epoch_s is not None:
         items.append(f"from {datetime.fromtimestamp(log.epoch_s, UTC):%Y-%m-%d %H:%M:%S} UTC")
-    return escape(" · ".join([*items, f"method {detection.method}"]))
+    return escape(" · ".join([*items, f"method {sketch.method}"]))
 
 
 def sentences(heading: str, lines: Sequence[str]) -> str:
@@ -125,13 +125,13 @@ def _table(heads: Sequence[str], rows: Sequence[str]) -> str:
     return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'
 
 
-def event_table(detection: Detection) -> str:
+def event_table(sketch: Sketch) -> str:
     """All events, numbered as in the plots."""
-    if not detection.events:
+    if not sketch.events:
         return '<p class="none">No fault was found.</p>'
-    end = float(detection.log.time[-1])
+    end = sketch.end_s
     rows = []
-    for i, e in enumerate(detection.events, 1):
+    for i, e in enumerate(sketch.events, 1):
         against = "–" if e.peak_score is None else f"{number(e.peak_score)} / {number(e.limit)}"
         against += " s silent" if e.kind == "miss" and e.peak_score is not None else ""
         row = _row(e.start_s, e.end_s, end, (_accused(e), e.channel or "–", e.kind, against, e.method))
@@ -139,14 +139,14 @@ def event_table(detection: Detection) -> str:
     return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
 
 
-def truth_table(detection: Detection, truth: Sequence[Fault]) -> str:
+def truth_table(sketch: Sketch, truth: Sequence[Fault]) -> str:
     """All injected faults, found or missed, or nothing where none was injected."""
     if not truth:
         return ""
-    end = float(detection.log.time[-1])
+    end = sketch.end_s
     rows, hits = [], 0
     for fault in sorted(truth, key=lambda f: f.start_s):
-        event = match(fault, detection.events)
+        event = match(fault, sketch.events)
         hits += event is not None
         size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in ("jam", "miss") else "–"
         cells = (fault.sensor, fault.channel or "all", fault.kind, size, _outcome(fault, event))

@@ -14,7 +14,7 @@ from sensorfault.logs.usual import usual_step
 
 GAP = 3.0  # a gap is longer than so many usual periods
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
-_HOPELESS = 0.2  # share of rows that may be dropped
+HOPELESS = 0.2  # share of rows that may be dropped
 _PER_SECOND = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
 _UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: what a reading must lie in to be Unix time
 
@@ -120,7 +120,7 @@ def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -
     found = " and ".join(
         text for count, text in ((back, f"goes back {times(back)}"), (repeat, f"stands still {times(repeat)}")) if count
     )
-    if dropped > _HOPELESS * len(usable):
+    if dropped > HOPELESS * len(usable):
         raise LogError(
             f"{source.path}: time '{column}' {found} (first {source.place(first)}), so {dropped} of {len(usable)} rows "
             "are out of order; sort the file by time, keep one row for each time, or name another time column."

@@ -7,14 +7,16 @@ from pathlib import Path
 import numpy as np
 
 from sensorfault.logs.entries import FileEntry
+from sensorfault.logs.late import Late
 from sensorfault.logs.one_clock import put_on_one_clock
 from sensorfault.logs.read import log_of
-from sensorfault.logs.readers.source import Tables, joined
+from sensorfault.logs.readers.source import Source, Tables, joined
 from sensorfault.logs.stream import read_stream
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 
 MARGIN_S = 5.0  # what comes so late in a part is told with the next: a slow topic's rows may still belong to it
+_STAYS = 0.8  # the ticks stay with their stream unless another has come that is faster than this
 MOST_SAID = 20  # notes; each part has its own
 
 
@@ -40,31 +42,36 @@ class Joining:
     before: Tables = field(default_factory=dict)
     handed_s: float = -np.inf  # up to here
     seen_s: float = -np.inf  # the last tick of the parts before
+    ticks: str | None = None  # the stream whose rows they are
     damage: dict[str, None] = field(default_factory=dict)
     notes: dict[str, None] = field(default_factory=dict)
     more: int = 0
 
+    def __post_init__(self) -> None:
+        self._late = Late(self.entries)
+
     def take(self, tables: Tables, last: bool = False) -> None:
         """The tables of the next part."""
-        both = joined(self.before, tables)
         self.damage |= dict.fromkeys(one.sentence(self.path) for source in tables.values() for one in source.damage)
-        log = self._log(both)
+        tables = self._late.without(tables, self.handed_s + (self.known.zero_s or 0.0))
+        both = joined(self.before, tables)
+        new = {name for name, source in tables.items() if len(source.frame)}
+        log = self._log(both, new) if new or last else None
         if log is None:
             self.before = both
             return
-        self.before = tables
+        self.before = {name: _recent(one, tables.get(name)) for name, one in both.items()}
         end_s = float(log.time[-1])
+        if end_s <= self.seen_s:  # what was seen last was a wild reading
+            self.seen_s = self.handed_s
         begin_s = max(self.seen_s, float(log.time[0]))
-        if end_s <= self.seen_s and not last:
-            self._note(
-                f"{self.path.name}: its clock goes back by {self.seen_s - end_s:.3g} s; those rows were left out."
-            )
-            return
-        self.seen_s = max(end_s, self.seen_s)
+        self.seen_s = end_s
         until = np.inf if last else end_s - min(MARGIN_S, (end_s - begin_s) / 2)
-        new = (log.time > self.handed_s + log.period_s / 2) & (log.time <= until)
         for note in log.notes:
             self._note(note)
+        self._hand_on(log, (log.time > self.handed_s + log.period_s / 2) & (log.time <= until))
+
+    def _hand_on(self, log: Log, new: np.ndarray) -> None:
         if new.any():
             rows = slice(int(np.argmax(new)), len(new) - int(np.argmax(new[::-1])))
             part = replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows], notes=())
@@ -75,6 +82,8 @@ class Joining:
         """All that a person should know, `first` among it."""
         if not np.isfinite(self.seen_s):
             raise LogError(f"{self.path}: one row is no log; name a file with at least two rows at different times.")
+        for note in self._late.notes():
+            self._note(note)
         more = (f"{self.path.name}: {self.more} more notes on its parts.",) if self.more else ()
         return Said(tuple(dict.fromkeys((*self.damage, *first, *self.notes, *more))), tuple(self.damage))
 
@@ -84,10 +93,12 @@ class Joining:
         else:
             self.more += 1
 
-    def _log(self, tables: Tables) -> Log | None:
-        """What is there of the described log, the sensors of absent tables without a value; None if nothing is."""
-        streams = []
-        there = []
+    def _log(self, tables: Tables, new: set[str]) -> Log | None:
+        """What is there of the described log, the sensors of absent tables without a value; None if nothing is.
+
+        `new`: the tables that have brought something since the part before.
+        """
+        streams, there, able = [], [], []
         for entry in self.entries:
             source = tables.get(entry.table or "", None)
             if source is not None and len(source.frame) > 1:
@@ -96,15 +107,25 @@ class Joining:
                 quiet = tuple(replace(sensor, period_s=sensor.period_s or 0.0) for sensor in mine)
                 streams.append(read_stream(source, entry, quiet))
                 there.append(entry.name)
+                able += [streams[-1]] if (entry.table or "") in new else []
         if not streams:
             return None
         present = replace(self.known, sensors=tuple(s for s in self.known.sensors if s.file in there))
-        clock = put_on_one_clock(streams)
+        fastest = min(able or streams, key=lambda one: one.period_s * (_STAYS if one.name == self.ticks else 1))
+        self.ticks = fastest.name
+        clock = put_on_one_clock(streams, ticks=fastest)
         if self.known.zero_s is None:  # the first part's beginning is that of all
             self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
             present = replace(present, zero_s=self.known.zero_s)
         notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
         return _widened(log_of(present, streams, clock, notes, ()), self.known)
+
+
+def _recent(both: Source, now: Source | None) -> Source:
+    """The rows of this part, but at least two: a slow table's next comes when it comes."""
+    if now is not None and len(now.frame) > 1:
+        return now
+    return replace(both, frame=both.frame.tail(2), before=both.before + max(0, len(both.frame) - 2))
 
 
 def _widened(log: Log, known: VehicleFile) -> Log:

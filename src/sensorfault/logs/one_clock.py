@@ -26,8 +26,8 @@ class OneClock:
     notes: tuple[str, ...] = ()
 
 
-def put_on_one_clock(streams: list[Stream], resample: Resample = "hold") -> OneClock:
-    """Put every stream on the ticks of the fastest.
+def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", ticks: Stream | None = None) -> OneClock:
+    """Put every stream on the ticks of the fastest, unless others are named.
 
     A slower stream's row goes to the first tick at or after its own time; of two rows for one tick the later stays.
     Where the fastest file has a gap, ticks of its usual period go on, so that its silence can be noticed.
@@ -35,19 +35,19 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold") -> OneC
     if len(streams) == 1 and resample == "hold":
         (only,) = streams
         return OneClock(only.zero_s, only.time, only.value, only.fresh)
-    fastest = min(streams, key=lambda stream: stream.period_s)
-    ticks, notes = _filled(fastest) if len(streams) > 1 else (fastest.time, [])
+    fastest = ticks or min(streams, key=lambda stream: stream.period_s)
+    at, notes = _filled(fastest) if len(streams) > 1 else (fastest.time, [])
     values, marks = [], []
     for stream in streams:
         time = stream.time + (stream.zero_s - fastest.zero_s)
         if resample == "linear":
-            value, fresh = _interpolated(ticks, time, stream)
+            value, fresh = _interpolated(at, time, stream)
         else:
-            value, fresh, note = _placed(ticks, time, stream, fastest)
+            value, fresh, note = _placed(at, time, stream, fastest)
             notes += note
         values.append(value)
         marks.append(fresh)
-    return OneClock(fastest.zero_s, ticks, np.concatenate(values, axis=1), np.concatenate(marks, axis=1), tuple(notes))
+    return OneClock(fastest.zero_s, at, np.concatenate(values, axis=1), np.concatenate(marks, axis=1), tuple(notes))
 
 
 def _filled(fastest: Stream) -> tuple[np.ndarray, list[str]]:

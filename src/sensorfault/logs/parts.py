@@ -7,7 +7,7 @@ import numpy as np
 
 from sensorfault.logs.guess import guess
 from sensorfault.logs.joining import Joining, Said
-from sensorfault.logs.place import files_of, find_vehicle, pair_files
+from sensorfault.logs.place import called_after, files_of, find_vehicle, pair_files
 from sensorfault.logs.read import GUESSED
 from sensorfault.logs.readers.beginning import is_long
 from sensorfault.logs.readers.formats import FORMATS, format_of, read_tables
@@ -53,7 +53,7 @@ def read_parts(
         able = ", ".join(one.title for one in FORMATS if one.parts)
         raise LogError(f"{path}: this is {what}; what can be read part by part is one file of: {able}.")
     described = find_vehicle(path, vehicle)
-    known = described or guess(path, tell)
+    known = called_after(described, path) if described else guess(path, tell)
     used = {sensor.file for sensor in known.sensors}
     entries = [entry for entry, _ in pair_files(known, path) if entry.name in used]
     names = frozenset(entry.table for entry in entries if entry.table is not None)

@@ -1,6 +1,7 @@
 """Where a log's files lie, and which entry of the vehicle file describes which."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
@@ -55,6 +56,15 @@ def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> Vehic
         return found
     names = {file.name for file in files}
     return found if all(entry.path is None or Path(entry.path).name in names for entry in found.files) else None
+
+
+def called_after(vehicle: VehicleFile, path: Where) -> VehicleFile:
+    """The description under the log's own name, where it was written for a file of another name."""
+    files = files_of(path)
+    one = {entry.path for entry in vehicle.files}
+    if len(files) > 1 or len(one) > 1 or None in one or Path(str(*one)).name == files[0].name:
+        return vehicle
+    return replace(vehicle, name=files[0].stem)
 
 
 def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]]:

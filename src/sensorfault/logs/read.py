@@ -9,7 +9,7 @@ from sensorfault.logs.clock import is_unix
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.guess import guess
 from sensorfault.logs.one_clock import OneClock, Resample, put_on_one_clock
-from sensorfault.logs.place import Where, find_vehicle, pair_files
+from sensorfault.logs.place import Where, called_after, find_vehicle, pair_files
 from sensorfault.logs.readers.formats import read_tables, take_table
 from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.stream import Stream, read_stream
@@ -46,7 +46,7 @@ def read(
         LogError: whatever keeps the log from being used, in one sentence.
     """
     described = find_vehicle(path, vehicle)
-    known = described or guess(path, tell)
+    known = called_after(described, path) if described else guess(path, tell)
     notes = () if described else (GUESSED, *known.notes)
     used = {sensor.file for sensor in known.sensors}
     pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]

@@ -5,18 +5,20 @@ import sensorfault._jax  # isort: skip  # noqa: F401
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
+from jax import lax
 from jaxtyping import Array, Float
 
-from sensorfault.numerics.neighbours import nearest
+from sensorfault.numerics.neighbours import in_rows, nearest_in_order, shares
 
 TINY = 1e-10  # added to a mean reach, lest a history with more than k equal points divide by nought (scikit-learn's)
 
 
-def density(reach: Float[Any, "*s k"]) -> Float[Any, "*s"]:
+def density(reach: Float[Any, "*s"]) -> Float[Any, "*s"]:
     """lrd, the local reachability density: one over the mean reach of the k neighbours. NumPy or JAX."""
     # (12) lrd = 1 / mean reach
-    return 1 / (reach.mean(axis=-1) + TINY)
+    return 1 / (reach + TINY)
 
 
 class LocalDensity(eqx.Module):
@@ -36,9 +38,30 @@ class LocalDensity(eqx.Module):
         Breunig et al. 2000, as Wang et al. 2023 use it, equations (10)-(13). It equals scikit-learn's
         `-LocalOutlierFactor(k, novelty=True).score_samples`: of points equally far exactly k are neighbours.
         """
-        index, distance = nearest(self.points, asked, self.k)
-        near = self.near[index]
-        # (11) reach(p, q) = max(kdist(q), d(p, q))
-        own: Float[Array, " C"] = density(jnp.maximum(near[..., 0], distance))
-        # (13) LOF = mean lrd of the neighbours / lrd
-        return near[..., 1].mean(axis=-1) / own
+        found: Float[Array, " C"]
+        if len(self.points) == 1:
+            found = jax.vmap(self._alone)(asked[:, 0])
+            return found
+        box = jnp.stack([self.points.min(axis=1), self.points.max(axis=1)], axis=1)
+        points, near = in_rows(self.points, jnp.inf), in_rows(self.near.T, 0.0)
+        # one by one stays in the processor's cache
+        found = lax.map(lambda one: _factor(near, *shares(points, box, one, self.k)), asked)
+        return found
+
+    def _alone(self, one: Float[Array, ""]) -> Float[Array, ""]:
+        index, distance = nearest_in_order(self.points[0], one, self.k)
+        return _factor(self.near[index].T, jnp.full(self.k, 1 / self.k), distance)
+
+
+def _factor(near: Float[Array, "2 *s"], share: Float[Array, "*s"], distance: Float[Array, "*s"]) -> Float[Array, ""]:
+    # (11) reach(p, q) = max(kdist(q), d(p, q))
+    reach = jnp.where(share > 0, share * jnp.maximum(near[0], distance), 0.0)
+    # (13) LOF = mean lrd of the neighbours / lrd
+    factor: Float[Array, ""] = _total(share * near[1]) / density(_total(reach))
+    return factor
+
+
+def _total(values: Float[Array, "*s"]) -> Float[Array, ""]:
+    # row by row: see ROW
+    total: Float[Array, ""] = values.sum(axis=-1).sum()
+    return total

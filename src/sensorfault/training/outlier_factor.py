@@ -26,9 +26,7 @@ def fit_history(seen: Float[np.ndarray, "M F"], seed: int, history: int = HISTOR
             f"{len(known)} healthy innovations are no history for {k} neighbours; give a longer healthy log, or a "
             "smaller k."
         )
-    points = np.random.default_rng(seed).permutation(known)[
-        :history
-    ]  # the k best of a row in no order are found faster
+    points = np.random.default_rng(seed).permutation(known)[:history]
     if points.shape[1] == 1:
         points = np.sort(points, axis=0)
     distance, index = KDTree(points).query(points, k + 1)
@@ -37,5 +35,5 @@ def fit_history(seen: Float[np.ndarray, "M F"], seed: int, history: int = HISTOR
     own[~own.any(axis=1), -1] = True
     distance, index = (x[~own].reshape(-1, k) for x in (distance, index))
     reach = distance[:, -1]
-    near = np.column_stack([reach, density(np.maximum(reach[index], distance))])
+    near = np.column_stack([reach, density(np.maximum(reach[index], distance).mean(axis=1))])
     return LocalDensity(jnp.asarray(points.T), jnp.asarray(near), k)

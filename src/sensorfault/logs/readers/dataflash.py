@@ -1,17 +1,21 @@
 """ArduPilot DataFlash logs (`.bin`): one table for each kind of message, found by pymavlink."""
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
+from numpy.lib.stride_tricks import sliding_window_view
 
+from sensorfault.logs.readers.covered import Covered
+from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.native import native
-from sensorfault.logs.readers.quiet import quiet
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, told
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import known, spelled
+
+if TYPE_CHECKING:
+    from sensorfault.logs.readers.dataflash_pieces import Piece
 
 HEAD = b"\xa3\x95"  # every message begins so
 CLOCKS = (("TimeUS", "us"), ("T", "ms"), ("TimeMS", "ms"))  # an older GPS message has the autopilot's time in T
@@ -34,46 +38,69 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     if head != HEAD:
         what = "an empty file" if not head else "not a DataFlash log (it does not begin with A3 95)"
         raise LogError(f"{path}: this is {what}; name a .bin file as the autopilot wrote it.")
-    formats, offsets = _index(path, ask)
-    content = np.memmap(path, np.uint8, mode="r")
-    spans: list[np.ndarray] = []
+    from sensorfault.logs.readers.dataflash_pieces import BadDescription, pieces_of  # lazily: for pymavlink
+
+    handing, covered = Handing(ask), Covered()
     tables: Tables = {}
-    for number, form in formats.items():
-        start = np.asarray(offsets[number], np.int64)
-        start = start[start + form.len <= len(content)]
-        spans.append(np.column_stack([start, np.full_like(start, form.len)]))
-        clock = next(((name, unit) for name, unit in CLOCKS if name in form.columns), None)
-        if clock is not None and len(start) > 1 and _is_whole(form):
-            messages = content[start[:, None] + np.arange(_HEAD_BYTES, form.len)]
-            tables |= _by_instance(path, form, messages, clock)
-    if not tables:
+    damage: list[Damage] = []
+    odd: dict[str, None] = {}
+    try:
+        for piece in pieces_of(path):
+            covered.take(*_spans(piece))
+            odd |= dict.fromkeys(_odd(piece))
+            tables = joined(tables, _tables(path, piece, ask))
+            if handing.asked:
+                handing.on(tables)
+                tables = {}
+            ask.tell(piece.end / path.stat().st_size)
+    except BadDescription as bad:
+        if not bad.at:
+            raise LogError(f"{path}: the DataFlash log is damaged ({bad}); copy it from the autopilot again.") from None
+        damage.append(Damage(f"what messages there are is not to be understood ({bad}), behind", f"byte {bad.at}"))
+    if not handing.asked:
+        tables = {name: one for name, one in tables.items() if len(one.frame) > 1}
+    tables = handing.rest(tables)
+    if not tables and ask.tables is None:
         raise LogError(f"{path}: no messages with a time in this DataFlash log; name a log of a whole flight.")
-    return told({name: one for name, one in tables.items() if ask.wants(name)}, (), _damage(content, spans))
+    notes = [f"{path.name}: messages described with contradictions left out: {', '.join(odd)}."] if odd else []
+    return told(tables, notes, [*covered.damage(), *(damage or _tail(path, covered.end))])
 
 
-def _index(path: Path, ask: Ask) -> tuple[Mapping[int, Any], list[Any]]:
-    """What each kind of message is like, and where in the file its messages begin."""
-    from pymavlink.DFReader import DFReader_binary  # lazily: only this format needs it
-
-    with quiet():
-        reader = DFReader_binary.__new__(DFReader_binary)
-        try:
-            reader.__init__(str(path), progress_callback=lambda percent: ask.tell(percent / 100))
-        except Exception as error:  # a damaged log fails in as many ways as it can be damaged
-            reader.filehandle.close()  # which it has opened first of all
-            reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
-            raise LogError(
-                f"{path}: the DataFlash log is damaged ({reason}); copy it from the autopilot again."
-            ) from None
-        formats, offsets = dict(reader.formats), reader.offsets
-        reader.close()
-    return formats, offsets
+def _odd(piece: "Piece") -> list[str]:
+    """Kinds of messages with a time that cannot be read."""
+    forms = [piece.formats[number] for number, start in piece.starts.items() if len(start)]
+    return [f"{form.name!r}" for form in forms if _clock(form) is not None and not _is_sound(form)]
 
 
-def _is_whole(form: Any) -> bool:
-    """Whether the kind of message is described without contradiction."""
+def _clock(form: Any) -> tuple[str, str] | None:
+    return next(((name, unit) for name, unit in CLOCKS if name in form.columns), None)
+
+
+def _spans(piece: "Piece") -> tuple[np.ndarray, np.ndarray]:
+    """Where in the file each message begins, and its bytes."""
+    starts = [piece.at + start for start in piece.starts.values()]
+    sizes = [np.full(len(start), piece.formats[number].len) for number, start in piece.starts.items()]
+    return np.concatenate(starts), np.concatenate(sizes)
+
+
+def _tables(path: Path, piece: "Piece", ask: Ask) -> Tables:
+    """The messages of a piece that have a time, of the kinds that are asked for."""
+    kinds = None if ask.tables is None else {name.partition("[")[0] for name in ask.tables}
+    tables: Tables = {}
+    for number, start in piece.starts.items():
+        form = piece.formats[number]
+        clock = _clock(form)
+        if clock is not None and len(start) and (kinds is None or form.name in kinds) and _is_sound(form):
+            messages = sliding_window_view(piece.content, form.len - _HEAD_BYTES)[start + _HEAD_BYTES]
+            tables |= _by_instance(path, form, messages, clock)
+    return {name: one for name, one in tables.items() if ask.wants(name)}
+
+
+def _is_sound(form: Any) -> bool:
+    """Whether a kind of message is described without contradiction, in words."""
     fits = np.dtype([(str(i), _PLAIN[c]) for i, c in enumerate(form.format)]).itemsize == form.len - _HEAD_BYTES
-    return fits and len(form.columns) == len(form.format) == len(set(form.columns) - {""})
+    words = all(name.isprintable() for name in (form.name, *form.columns))
+    return fits and words and len(form.columns) == len(form.format) == len(set(form.columns) - {""})
 
 
 def _by_instance(path: Path, form: Any, messages: np.ndarray, clock: tuple[str, str]) -> Tables:
@@ -87,7 +114,6 @@ def _by_instance(path: Path, form: Any, messages: np.ndarray, clock: tuple[str, 
     return {
         f"{form.name}[{device}]" if device else form.name: _table(path, form, of_it, clock)
         for device, of_it in devices.items()
-        if len(of_it) > 1
     }
 
 
@@ -106,20 +132,11 @@ def _table(path: Path, form: Any, rows: np.ndarray, clock: tuple[str, str]) -> S
     return Source(path, pl.DataFrame(columns), *clock, units=units)
 
 
-def _damage(content: np.ndarray, spans: list[np.ndarray]) -> list[Damage]:
-    """Bytes that belong to no message, unless they only fill the last page."""
-    span = np.concatenate(spans)
-    span = span[np.argsort(span[:, 0])]
-    end = np.concatenate([[0], span.sum(axis=1)])
-    start = np.concatenate([span[:, 0], [len(content)]])
-    lost = start - np.maximum.accumulate(end)
-    tail = int(lost[-1])
-    found = []
-    if (lost[:-1] > 0).any():
-        first = int(end[np.argmax(lost[:-1] > 0)])
-        count = int(lost[:-1][lost[:-1] > 0].sum())
-        found.append(Damage(f"{count} bytes belong to no message, the first", f"byte {first}", "the others were read"))
-    at = len(content) - tail
-    if tail >= _PADDING or content[at : at + 2].tobytes() == HEAD:
-        found.append(Damage("the file ends in what is no whole message,", f"byte {at}"))
-    return found
+def _tail(path: Path, end: int) -> list[Damage]:
+    """Bytes behind the last message, unless they only fill the last page."""
+    with path.open("rb") as file:
+        file.seek(end)
+        tail = file.read(_PADDING)
+    if len(tail) < _PADDING and not tail.startswith(HEAD):
+        return []
+    return [Damage("the file ends in what is no whole message,", f"byte {end}")]

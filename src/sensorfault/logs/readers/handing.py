@@ -22,8 +22,9 @@ class Handing:
         return bool(self._empty)
 
     def on(self, tables: Tables) -> None:
-        """The tables of a part."""
-        assert self._part is not None
+        """The tables of a part, if there are any."""
+        if self._part is None or not tables:
+            return
         self._empty |= {name: replace(one, frame=one.frame.clear()) for name, one in tables.items()}
         self._part(tables)
 

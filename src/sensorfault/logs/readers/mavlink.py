@@ -1,6 +1,7 @@
 """MAVLink telemetry as a ground station writes it (`.tlog`): a time and a packet, again and again; by pymavlink."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +25,11 @@ def read_tlog(path: Path, ask: Ask) -> Tables:
     Raises:
         LogError: empty, or no packet in it that can be read.
     """
-    with TellingFile(path, ask.tell) as file, quiet():
-        telemetry = _Telemetry(path, ask)
-        telemetry.read(file)
+    with quiet() as aloud:
+        part = None if ask.part is None else aloud(ask.part)
+        with TellingFile(path, aloud(ask.tell)) as file:
+            telemetry = _Telemetry(path, replace(ask, part=part))
+            telemetry.read(file)
     tables, notes = telemetry.topics.tables()
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no MAVLink packet in this file; name a .tlog file as a ground station wrote it.")

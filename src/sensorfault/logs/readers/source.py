@@ -54,6 +54,7 @@ class Source:
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
     `times`: the file that its time column stands in, where that is another.
+    `before`: rows of the table in parts of the file that were read before this one.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
 
@@ -68,6 +69,7 @@ class Source:
     units: Mapping[str, str] = field(default_factory=dict)
     table: str = ""
     times: Path | None = None
+    before: int = 0
 
     @property
     def name(self) -> str:
@@ -76,7 +78,7 @@ class Source:
 
     def place(self, row: int) -> str:
         """Where a row stands in the file, for a person."""
-        return f"line {row + self.first_line}" if self.first_line else f"row {row + 1}"
+        return f"line {row + self.first_line}" if self.first_line else f"row {row + self.before + 1}"
 
     def any_column(self, name: str) -> pl.Series:
         """One column as it is, numbers or not.

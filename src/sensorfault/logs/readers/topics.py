@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.readers.fields import Fields
+from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.protobuf_fields import ProtobufFields
 from sensorfault.logs.readers.ros_types import si_unit_of
 from sensorfault.logs.readers.source import PART, Ask, Source, Tables, told
@@ -34,7 +35,12 @@ class Topics:
         self._topics: dict[str, _Topic] = {}
         self._unknown: dict[str, str] = {}
         self._numbers = 0  # gathered since the last part
-        self.handed_on = False
+        self._handing = Handing(ask)
+
+    @property
+    def handed_on(self) -> bool:
+        """Whether a part has been."""
+        return self._handing.begun
 
     def take(self, topic: str, kind: str, received_ns: int, message: Any) -> None:
         """One decoded message."""
@@ -42,31 +48,27 @@ class Topics:
             self._topics[topic] = _Topic(kind, message)
         self._topics[topic].take(received_ns, message)
         self._numbers += len(self._topics[topic].fields.names)
-        if self.ask.part is not None and self._numbers >= PART:
-            self._hand_on(self.ask.part)
-
-    def _hand_on(self, part: Callable[[Tables], None]) -> None:
-        """All that has been gathered, which is then forgotten."""
-        part(told(*self.tables()))
-        for of_it in self._topics.values():
-            of_it.clear()
-        self._numbers, self.handed_on = 0, True
+        if self._handing.asked and self._numbers >= PART:
+            self._handing.on(told(self._gathered(), self._left_out()))
+            for of_it in self._topics.values():
+                of_it.clear()
+            self._numbers = 0
 
     def cannot(self, topic: str, why: str) -> None:
         """A topic whose messages nobody can decode."""
         self._unknown.setdefault(topic, why)
 
     def tables(self) -> tuple[Tables, list[str]]:
-        """The tables, and what was left out, in sentences."""
-        tables: Tables = {}
+        """The tables, or the last part of them, and what was left out, in sentences."""
+        return self._handing.rest(self._gathered()), self._left_out()
+
+    def _left_out(self) -> list[str]:
         notes: list[str] = []
         bare, cut = [], []
         for topic, of_it in self._topics.items():
             if len(of_it.fields.names) == 0:
                 bare.append(f"{topic} ({of_it.kind})")
                 continue
-            if of_it.rows:  # else none could be decoded, which its reader says, or all are handed on
-                tables[topic] = of_it.table(self.path, topic, self.unit_of)
             cut += [f"{topic}.{field}" for field in of_it.fields.left_out]
         unknown = [f"{topic} ({why})" for topic, why in sorted(self._unknown.items())]
         for what, listed in (
@@ -76,7 +78,15 @@ class Topics:
         ):
             if listed:
                 notes.append(f"{self.path.name}: {what} left out: {', '.join(listed)}.")
-        return tables, notes
+        return notes
+
+    def _gathered(self) -> Tables:
+        """A topic without a row is none: no message could be decoded, which its reader says, or all are handed on."""
+        return {
+            topic: of_it.table(self.path, topic, self.unit_of)
+            for topic, of_it in self._topics.items()
+            if of_it.rows and of_it.fields.names
+        }
 
 
 class _Topic:

@@ -2,7 +2,6 @@
 
 import struct
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +9,6 @@ from pyulog import ULog
 
 from sensorfault.logs.readers.source import PART
 from sensorfault.logs.readers.telling import open_telling
-
-_HEADER = struct.Struct("<HB")
 
 
 class Loaded(ULog):  # type: ignore[misc]
@@ -35,8 +32,8 @@ class Loaded(ULog):  # type: ignore[misc]
         self.due = False
         self._tell, self._take = tell, take
         super().__init__(None)
-        self._MessageHeader = partial(_Header, self)
-        self._subscriptions = _Subscriptions(self._data_list)
+        self._MessageHeader = lambda: _header(self)
+        self._MessageAddLogged = self._announced
         with open_telling(path, self._heard) as self._opened:
             self._load_file(self._opened, names)
         self._count_lost()
@@ -65,6 +62,15 @@ class Loaded(ULog):  # type: ignore[misc]
             self.due = gathered + sum(len(field) for one in self._data_list for field in one.data.values()) >= PART
         self._tell(share)
 
+    def _announced(self, *message: Any) -> Any:
+        """A new topic. One that had its number before had data, which pyulog would forget."""
+        new = ULog._MessageAddLogged(*message)
+        before = self._subscriptions.get(new.msg_id)
+        if before is not None and before.buffer:
+            self._data_list.append(ULog.Data(before))
+            before.buffer = bytearray()
+        return new
+
     def _count_lost(self) -> None:
         self.lost += len(self._dropouts)
         self.lost_s += sum(one.duration for one in self._dropouts) / 1e3
@@ -80,33 +86,18 @@ class Loaded(ULog):  # type: ignore[misc]
             self.broken_at = self._opened.tell()
 
 
-class _Subscriptions(dict[int, Any]):
-    """By number. One that another replaces had data, which pyulog would forget."""
+def _header(log: Loaded) -> Any:
+    """What pyulog reads the size and kind of each message into."""
+    unpack = struct.Struct("<HB").unpack
 
-    def __init__(self, topics: list[Any]) -> None:
-        super().__init__()
-        self._topics = topics
+    class Header:
+        def initialize(self, data: bytes) -> None:
+            if log.due:
+                log.hand_on()
+            try:
+                self.msg_size, self.msg_type = unpack(data)
+            except struct.error:
+                log.left = len(data)
+                raise
 
-    def __setitem__(self, number: int, one: Any) -> None:
-        before = self.get(number)
-        if before is not None and before.buffer:
-            self._topics.append(ULog.Data(before))
-        super().__setitem__(number, one)
-
-
-class _Header:
-    """Size and kind of a message."""
-
-    __slots__ = ("log", "msg_size", "msg_type")
-
-    def __init__(self, log: Loaded) -> None:
-        self.log, self.msg_size, self.msg_type = log, 0, 0
-
-    def initialize(self, data: bytes) -> None:
-        if self.log.due:
-            self.log.hand_on()
-        try:
-            self.msg_size, self.msg_type = _HEADER.unpack(data)
-        except struct.error:
-            self.log.left = len(data)
-            raise
+    return Header()

@@ -1,0 +1,106 @@
+"""Clocks that go back or jump in a log that is read part by part: as in the log read whole."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sensorfault.logs import Log, LogError, read
+from sensorfault.logs.parts import read_parts
+from sensorfault.logs.readers import dataflash_text
+
+HEAD = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 132, 40, BARO, Qff, TimeUS,Alt,Press\n"
+HEAD += "FMT, 131, 40, IMU, Qfff, TimeUS,AccX,AccY,AccZ\n"
+VEHICLE = """[file.imu]
+table = "IMU"
+[file.baro]
+table = "BARO"
+[sensor.accelerometer]
+file = "imu"
+[sensor.accelerometer.channel]
+x = { column = "AccX", unit = "m/s^2" }
+[sensor.barometer]
+file = "baro"
+[sensor.barometer.channel]
+altitude = { column = "Alt", unit = "m" }
+"""
+
+
+@pytest.fixture(autouse=True)
+def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dataflash_text, "PART_CELLS", 400)
+
+
+def imu(us: int, k: int) -> str:
+    return f"IMU, {us}, {np.sin(k)}, {np.cos(k)}, -9.8\n"
+
+
+def flown(folder: Path, lines: list[str]) -> Path:
+    path = folder / "flight.log"
+    path.write_text(HEAD + "".join(lines))
+    (folder / "vehicle.toml").write_text(VEHICLE)
+    return path
+
+
+def flight(rows: int, baro: int = 10) -> list[str]:
+    """An IMU at 100 Hz, a barometer once in so many rows."""
+    lines = [imu(10_000 * k, k) for k in range(rows)]
+    return [line + (f"BARO, {10_000 * k}, {k}, 9e4\n" if k % baro == 0 else "") for k, line in enumerate(lines)]
+
+
+def by_parts(path: Path) -> tuple[Log, list[str], int]:
+    parts: list[Log] = []
+    said = read_parts(path, parts.append)
+    time, value = np.concatenate([p.time for p in parts]), np.concatenate([p.value for p in parts])
+    fresh = np.concatenate([p.fresh for p in parts])
+    return Log(time, value, fresh, parts[0].channels, parts[0].sensors), list(said.notes), len(parts)
+
+
+def assert_same(path: Path) -> list[str]:
+    whole, (log, notes, parts) = read(path), by_parts(path)
+    assert parts > 5
+    np.testing.assert_allclose(log.time, whole.time, atol=1e-9)
+    np.testing.assert_array_equal(log.value, whole.value)
+    np.testing.assert_array_equal(log.fresh, whole.fresh)
+    return notes
+
+
+def test_a_short_second_boot_is_left_out_and_said(tmp_path: Path) -> None:
+    notes = assert_same(flown(tmp_path, [*flight(2000), *flight(300)]))
+    assert "flight.log (IMU): time 'TimeUS' goes back (first row 2001); 300 rows left out." in notes
+
+
+def test_two_boots_are_no_log(tmp_path: Path) -> None:
+    path = flown(tmp_path, [*flight(2000), *flight(1500)])
+    with pytest.raises(LogError, match="rows are out of order"):
+        read(path)
+    with pytest.raises(LogError, match=r"goes back \(first row 2001\), so 1500 of 3500 rows are out of order"):
+        by_parts(path)
+
+
+@pytest.mark.parametrize("row", range(995, 1105, 7))
+@pytest.mark.parametrize("us", [0, 10**15])
+def test_a_wild_reading_costs_one_row_wherever_it_stands(tmp_path: Path, row: int, us: int) -> None:
+    lines = flight(2000)
+    lines[row] = imu(us, row)
+    log, _, _ = by_parts(flown(tmp_path, lines))
+    kept = np.delete(0.01 * np.arange(2000), row)
+    assert set(np.round(kept, 6)) <= set(np.round(log.time, 6))
+
+
+def test_a_sensor_slower_than_the_parts_loses_nothing_but_its_first_row(tmp_path: Path) -> None:
+    """One row alone has no clock, and has long been handed on as absent when the second comes."""
+    path = flown(tmp_path, flight(2000, baro=330))
+    whole, (log, _, _) = read(path), by_parts(path)
+    np.testing.assert_array_equal(log.value[1:], whole.value[1:])
+    assert np.isfinite(whole.value[1:, 1]).sum() == 6
+
+
+def test_ticks_stay_with_their_sensor(tmp_path: Path) -> None:
+    """Two sensors of one rate, never at the same time; now and then the other runs faster by a thousandth."""
+    lines = [
+        imu(10_000 * k, k) + f"BARO, {10_000 * k + 5000 + 10 * abs((k + 200) % 400 - 200)}, {k}, 9e4\n"
+        for k in range(2000)
+    ]
+    log, _, _ = by_parts(flown(tmp_path, lines))
+    np.testing.assert_allclose(log.time, 0.01 * np.arange(2000), atol=1e-6)
