@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 import fitted
+from sensorfault import long_log
 from sensorfault.detection import Detection
 from sensorfault.detector import detect
-from sensorfault.logs import read, write
+from sensorfault.logs import Log, LogError, read, write
 from sensorfault.logs.readers import csv
 from sensorfault.long_log import detect_long
+from sensorfault.model import Model
 
 
 def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -36,3 +38,30 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.M
     for name in ("channel", "sensor", "sample", "motion", "repaired"):
         parts = np.concatenate([getattr(part, name) for part, _ in seen])
         np.testing.assert_allclose(parts, getattr(whole, name), atol=1e-9)
+
+
+def test_without_a_model_one_is_fitted_on_the_beginning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 100_000)
+    path = tmp_path / "drive.csv"
+    write(fitted.lying().log, path)
+    given: list[Log] = []
+
+    def fit(log: Log) -> Model:
+        given.append(log)
+        return fitted.model()
+
+    whole = read(path)
+    told = detect_long(fit, path, learn=0.2)
+    (early,) = given
+    np.testing.assert_array_equal(early.value, whole.value[: len(early)])
+    assert told.fitted_on_s == pytest.approx((whole.time[0], early.time[-1]))
+    assert 0.1 < len(early) / len(whole) < 0.3
+    assert told.log.time[0] == pytest.approx(whole.time[len(early)])
+    assert (told.rows, told.end_s) == (len(whole) - len(early), pytest.approx(whole.time[-1]))
+    assert told.events
+    monkeypatch.setattr(long_log, "EARLY", 1000)
+    detect_long(fit, path, learn=0.9)
+    assert len(given[1]) < 0.2 * len(whole)
+    monkeypatch.undo()
+    with pytest.raises(LogError, match="too short to be fitted on"):
+        detect_long(fit, path)

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from sensorfault.detection import Detection, detected
 from sensorfault.events import Event
 from sensorfault.follow import Follower
@@ -13,69 +15,109 @@ from sensorfault.logs.vehicle import VehicleFile
 from sensorfault.model import Model
 from sensorfault.replay import replay_on
 
+EARLY = 1 << 22  # numbers, 32 MB of them, that a model is fitted on where none is given
+
 
 @dataclass(frozen=True)
 class LongDetection:
     """What was found in a log that was never in memory as a whole.
 
-    `log` is its first row, with its names and clock. `notes`: what reading found.
+    `log` is its first judged row, with its names and clock. `notes`: what reading found. `fitted_on_s`: from where to
+    where the log was taken as healthy, if the model is its own.
     """
 
     log: Log
-    method: str
+    model: Model
     rows: int
     end_s: float
     events: tuple[Event, ...]
     notes: tuple[str, ...]
+    fitted_on_s: tuple[float, float] | None = None
 
 
 def detect_long(
-    model: Model,
+    model: Model | Callable[[Log], Model],
     path: Path,
     vehicle: str | Path | VehicleFile | None = None,
     tell: Callable[[float], None] = lambda share: None,
     see: Callable[[Detection, float], None] | None = None,
+    learn: float = 0.5,
 ) -> LongDetection:
     """The events that `detect` finds in the same file; verdicts and scores of single rows are not kept.
 
-    `see` is shown each part, with all events so far, and the share of the file that it is.
+    `model` may also be what fits one: it is given the log's beginning, `learn` of the file but no more than EARLY
+    numbers, and the rest is judged. `see` is shown each part that is judged, with all events so far, and the share of
+    the file that it is.
 
     Raises:
-        LogError: as `read_parts` and `detect` say, or a model of epochs, which are not cut between parts.
+        LogError: as `read_parts` and `detect` say; a model of epochs, which are not cut between parts; or a file that
+            ends before there is enough to fit on.
     """
+    given, fit = (model, None) if isinstance(model, Model) else (None, model)
+    judging = None if given is None else _Judging(_taken(given, path), see)
+    early: list[Log] = []
+    fitted_on_s, read = None, 0.0
+
+    def heard(share: float) -> None:
+        nonlocal read
+        read = share
+        tell(share)
+
+    def take(part: Log) -> None:
+        nonlocal judging, fitted_on_s
+        if judging is not None:
+            judging.take(part, read)
+            return
+        assert fit is not None
+        early.append(part)
+        if read >= learn or sum(one.value.size for one in early) >= EARLY:
+            beginning = _joined(early)
+            early.clear()
+            fitted_on_s = float(beginning.time[0]), float(beginning.time[-1])
+            judging = _Judging(_taken(fit(beginning), path), see, read)
+
+    said = read_parts(path, take, vehicle, heard)
+    if judging is None or judging.first is None:
+        raise LogError(f"{path}: it is too short to be fitted on and judged part by part; read it whole.")
+    events = tuple(judging.follower.events)
+    return LongDetection(judging.first, judging.model, judging.rows, judging.end_s, events, said.notes, fitted_on_s)
+
+
+def _taken(model: Model, path: Path) -> Model:
     if model.framing:
         raise LogError(
             f"{path}: {model.method} judges epochs of satellites, which are not cut in parts; read it whole."
         )
-    judging = _Judging(model, see)
-
-    def heard(share: float) -> None:
-        judging.read = share
-        tell(share)
-
-    said = read_parts(path, judging.take, vehicle, heard)
-    assert judging.first is not None  # a file without a part is an error
-    events = tuple(judging.follower.events)
-    return LongDetection(judging.first, model.method, judging.rows, judging.end_s, events, said.notes)
+    return model
 
 
 class _Judging:
-    """The monitor's state between two parts. `read`: the share of the file that has been read."""
+    """The monitor's state between two parts."""
 
-    def __init__(self, model: Model, see: Callable[[Detection, float], None] | None) -> None:
-        self.model, self.see, self.follower = model, see, Follower(model)
-        self.read = self._seen = 0.0
+    def __init__(self, model: Model, see: Callable[[Detection, float], None] | None, read: float = 0.0) -> None:
+        self.model, self.follower = model, Follower(model)
         self.first: Log | None = None
         self.rows, self.end_s = 0, 0.0
+        self._see, self._read = see, read
         self._state = model.monitor.init()
 
-    def take(self, part: Log) -> None:
+    def take(self, part: Log, read: float) -> None:
+        """The next part; `read`: the share of the file that has been."""
         log = self.model.take(part)
         if self.first is None:
             self.first = replace(log, time=log.time[:1], value=log.value[:1], fresh=log.fresh[:1])
         self._state, told = replay_on(self.model.monitor, self._state, log)
         self.follower.take(log, told)
         self.rows, self.end_s = self.rows + len(log), float(log.time[-1])
-        if self.see is not None:
-            self.see(detected(self.model, log, told, self.follower.events), self.read - self._seen)
-            self._seen = self.read
+        if self._see is not None:
+            self._see(detected(self.model, log, told, self.follower.events), read - self._read)
+            self._read = read
+
+
+def _joined(parts: list[Log]) -> Log:
+    return replace(
+        parts[-1],
+        time=np.concatenate([part.time for part in parts]),
+        value=np.concatenate([part.value for part in parts]),
+        fresh=np.concatenate([part.fresh for part in parts]),
+    )

@@ -58,10 +58,21 @@ def test_a_page_by_parts(run: Run, drive: Path, car: Path, monkeypatch: pytest.M
         Path("report.html").unlink()
 
 
+def test_without_a_model_it_is_fitted_on_the_beginning(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
+    run("inject", drive, "--fault", "bias:accelerometer.x:60:5:9", "--out", "lying.csv")
+    said = run("detect", "lying.csv", "--by-parts", "--method", "pca", "--json", "-", "--report", "page.html")
+    assert "pca was fitted on the log's own beginning, 0:00.00 to" in said.err
+    assert "taken as healthy" in Path("page.html").read_text()
+    told = json.loads(said.out)
+    assert told["fitted_on_s"][1] < told["judged_s"][0] < 60
+    assert ("accelerometer", "bias") in [(event["sensor"], event["kind"]) for event in told["events"]]
+
+
 def test_what_parts_cannot_do_is_a_sentence(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     answer = run("detect", drive, "--by-parts")
     assert (answer.code, answer.out) == (2, "")
-    assert "needs a --model" in answer.err
+    assert "too short to be fitted on" in answer.err
     monkeypatch.setattr(os, "sysconf", {"SC_PHYS_PAGES": 2, "SC_PAGE_SIZE": 4096}.get)
     answer = run("detect", drive)
     assert answer.code == 2

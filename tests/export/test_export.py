@@ -2,12 +2,15 @@
 
 import csv
 import json
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from logs.written_ros import mcap as recorded
 from sensorfault.events import Event
@@ -54,8 +57,6 @@ def test_no_events_are_a_file_too(tmp_path: Path, suffix: str) -> None:
 
 
 def messages(path: Path) -> list[tuple[str, int, bytes]]:
-    from mcap.reader import make_reader
-
     with path.open("rb") as file:
         return [(c.topic, m.log_time, m.data) for _, c, m in make_reader(file).iter_messages()]
 
@@ -71,7 +72,7 @@ def test_annotations_beside_the_recording(tmp_path: Path) -> None:
         if topic == "/sensorfault/states"
     ]
     at = [round(time, 3) for time, _ in states]
-    assert at == [0, 1, 1.5, 2, 2, 2, 3, 3.5]
+    assert at == [0, 1, 1.5, 2, 2, 2, 3, 3.5, 4.9]
     quiet = {"gyro": "ok", "gnss": "ok", "motion": "ok", "unknown": "ok"}
     assert states[0][1] == quiet
     assert states[1][1] == {**quiet, "gyro": "bias"}
@@ -80,6 +81,55 @@ def test_annotations_beside_the_recording(tmp_path: Path) -> None:
     texts = [raw for topic, _, raw in messages(tmp_path / "told.mcap") if topic == "/sensorfault/events"]
     assert len(texts) == 7
     assert b"bias on gyro.x begins (score 9, limit 8, drone)" in texts[0]
+
+
+def test_a_recording_is_copied_with_all_that_it_holds(tmp_path: Path) -> None:
+    source, path = tmp_path / "drive.mcap", tmp_path / "told.mcap"
+    with source.open("wb") as file:
+        writer = Writer(file, chunk_size=500)
+        writer.start("ros2", "a recorder")
+        schema = writer.register_schema("own/A", "ros2msg", b"float64 x")
+        channels = [writer.register_channel(f"/{name}", "cdr", schema, {"qos": name}) for name in "ab"]
+        bare = writer.register_channel("/bare", "json", 0)
+        for k in range(50):
+            at = int((EPOCH_S + k / 10) * 1e9)
+            writer.add_message(channels[k % 2], at, bytes([k]) * 20, at - 7, k)
+            writer.add_message(bare, at, b"{}", at)
+        writer.add_attachment(1, 2, "camera.yaml", "text/yaml", b"f: 1")
+        writer.add_metadata("car", {"plate": "M-1"})
+        writer.finish()
+    write_events(EVENTS, log(), path, source)
+    told = {}
+    for one in (source, path):
+        with one.open("rb") as file:
+            reader = make_reader(file)
+            own = [
+                (c.topic, c.metadata, s and (s.name, s.data), m.log_time, m.publish_time, m.sequence, m.data)
+                for s, c, m in reader.iter_messages()
+                if "/sensorfault" not in c.topic
+            ]
+            attached = [(one.name, one.data, one.log_time) for one in reader.iter_attachments()]
+            told[one] = own, attached, list(reader.iter_metadata()), reader.get_header().profile
+    assert told[path] == told[source]
+    with path.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.message_count == 100 + 7 + 9
+    spans = [(chunk.message_start_time, chunk.message_end_time) for chunk in summary.chunk_indexes]
+    assert all(end <= start for (_, end), (start, _) in pairwise(spans))  # a viewer that seeks loads one
+
+
+def test_of_a_damaged_recording_what_is_whole_is_copied(tmp_path: Path) -> None:
+    source = recorded(tmp_path / "drive.mcap")
+    sound = messages(source)
+    content = bytearray(source.read_bytes())
+    content[len(content) // 3] ^= 255
+    source.write_bytes(content[:-2000])
+    write_events(EVENTS, log(), tmp_path / "told.mcap", source)
+    own = [one for one in messages(tmp_path / "told.mcap") if "/sensorfault" not in one[0]]
+    assert len(sound) / 2 < len(own) < len(sound)
+    assert set(own) < set(sound)
 
 
 def diagnostics(path: Path) -> list[tuple[float, Any]]:

@@ -18,6 +18,7 @@ from logs import (
     written_foxglove,
     written_mat73,
     written_ros,
+    written_subframes,
     written_ulog,
 )
 
@@ -149,6 +150,7 @@ SMALL: dict[str, Callable[[Path], Path]] = {
     "CAN recording": lambda folder: written_bus.blf(folder / "drive.blf"),
     "CAN recording, as text": lambda folder: written_bus.asc(folder / "drive.asc"),
     "u-blox": ubx,
+    "u-blox, with ephemerides": lambda folder: written_subframes.rover(folder / "rover.ubx"),
     "NMEA": nmea,
     "RINEX observations": _text("site.obs", texts.rinex_3),
     "RINEX observations, version 2": _text("site.25o", texts.rinex_2),

@@ -8,6 +8,7 @@ import pytest
 
 from logs import written_bus
 from sensorfault.logs import Log, LogError, guess, read
+from sensorfault.logs.readers.apart import load_apart
 
 
 def column(log: Log, path: str) -> np.ndarray:
@@ -25,6 +26,12 @@ def test_groups_of_an_mdf_file_are_tables_with_clocks_of_their_own(tmp_path: Pat
     np.testing.assert_array_equal(np.flatnonzero(fresh), np.arange(0, written_bus.ROWS, 5))
     np.testing.assert_allclose(column(log, "speed.speed")[fresh], (36 + time[::5]) / 3.6)
     assert any("1 channel of texts or arrays left out" in note for note in log.notes)
+
+
+def test_the_process_that_reads_mdf_is_asked_for_stretches_of_time(tmp_path: Path) -> None:
+    loaded = load_apart("mdf_load", written_bus.mdf(tmp_path / "drive.mf4"), 0)
+    assert loaded.told["parts"] == 1
+    assert len(loaded.vectors["imu"]["ax"]) == written_bus.ROWS
 
 
 @pytest.mark.parametrize("write", [written_bus.blf, written_bus.asc])

@@ -13,7 +13,8 @@ from logs.written_ros import bag1, bag2
 from sensorfault.logs import Log, LogError, guess, read, write
 from sensorfault.logs.parts import is_long_log, read_parts
 from sensorfault.logs.read import GUESSED
-from sensorfault.logs.readers import beginning, can_bus, csv, parquet, topics
+from sensorfault.logs.readers import beginning, can_bus, csv, mdf, mdf_load, parquet, topics
+from sensorfault.logs.readers.apart import Loaded
 from sensorfault.logs.readers.formats import read_tables
 
 
@@ -80,6 +81,39 @@ def test_a_can_recording_with_frames_that_cannot_be_decoded(
     assert_whole(path)
     said = read_parts(path, lambda part: None).notes
     assert "300 frames of unknown messages left out, of 0x300" in " ".join(said)
+
+
+@pytest.mark.parametrize("compression", [0, 2])
+def test_groups_of_an_mdf_file_that_come_at_rates_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, compression: int
+) -> None:
+    path = written_bus.mdf(tmp_path / "drive.mf4", 500, compression)
+    path.with_suffix(".vehicle.toml").write_text(guess(path).to_toml())
+    whole = read(path)
+    monkeypatch.setattr(mdf_load, "PART", 200)
+    monkeypatch.setattr(mdf, "load_apart", lambda loader, file, part: mdf_load.load(str(file), part))
+    assert_whole(path)
+    assert len(whole) == 500
+
+
+def test_an_mdf_file_is_read_up_to_the_part_at_which_its_library_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = written_bus.mdf(tmp_path / "drive.mf4", 500)
+    path.with_suffix(".vehicle.toml").write_text(guess(path).to_toml())
+
+    def load(loader: str, file: Path, part: int) -> Loaded:
+        if part == 3:
+            raise ValueError("its sizes and types contradict each other")
+        return mdf_load.load(str(file), part)
+
+    monkeypatch.setattr(mdf_load, "PART", 200)
+    monkeypatch.setattr(mdf, "load_apart", load)
+    parts: list[Log] = []
+    (said,) = read_parts(path, parts.append).damage
+    assert said.startswith("drive.mf4: the file can be read no further (its sizes and types contradict each other)")
+    assert "at part 4 of 11; what came before was read." in said
+    assert parts[-1].time[-1] == pytest.approx(9.98 * 3 / 11, abs=0.03)
 
 
 def test_a_topic_that_falls_silent_is_there_without_values(tmp_path: Path) -> None:

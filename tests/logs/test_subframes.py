@@ -4,52 +4,32 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pyubx2 import GET, UBXMessage
 
-from logs import written_subframes
+from logs.written_subframes import beidou, glonass, orbit, rover, strings
 from sensorfault.logs import read
 from sensorfault.logs.readers.gnss.beidou import BeidouSubframes
 from sensorfault.logs.readers.gnss.glonass import GlonassStrings
+from sensorfault.logs.readers.gnss.rinex_nav import read_nav
+from sensorfault.numerics.gnss import kepler
 from sensorfault.numerics.gnss.glonass import GlonassEphemeris
 from sensorfault.numerics.gnss.kepler import Ephemeris
 
 SECOND, GPS_S = 259_206, 2381 * 604_800.0 + 259_220  # of BeiDou's week, and GPS time
 HALF = np.pi / 2**31
+POTSDAM = Path("gnss") / "smartloc_berlin_potsdamer_platz"
 UNITS = {  # BDS-SIS-ICD-B1I, tables 5-6 and 5-8
     "group_delay": 1e-10, "af0": 2.0**-33, "af1": 2.0**-50, "af2": 2.0**-66, "delta_n": np.pi / 2**43,
     "anomaly": HALF, "eccentricity": 2.0**-33, "sqrt_a": 2.0**-19, "inclination": HALF, "node": HALF, "perigee": HALF,
     "node_rate": np.pi / 2**43, "inclination_rate": np.pi / 2**43, "cuc": 2.0**-31, "cus": 2.0**-31, "crc": 2.0**-6,
     "crs": 2.0**-6, "cic": 2.0**-31, "cis": 2.0**-31, "toe_of_week": 8.0,
 }  # fmt: skip
-WHOLE = {  # of no sign
-    "eccentricity": 12_345_678, "sqrt_a": int(5282.6 * 2**19), "toe_of_week": 259_200 // 8, "toc": 259_200 // 8,
-    "health": 0,
-}  # fmt: skip
-
-
-def orbit() -> dict[str, int]:
-    """Numbers that use all their bits, with the sign that they have."""
-    rng = np.random.default_rng(3)
-    drawn = {
-        n: int(rng.integers(-(2 ** (b - 1)), 2 ** (b - 1)))
-        for n, b in written_subframes.sizes(written_subframes.D1).items()
-    }
-    return drawn | WHOLE
-
-
-def strings() -> dict[str, int]:
-    """A satellite over the equator at 12:15 of Moscow."""
-    place = {"x": (-15_000 * 2**11), "y": (12_000 * 2**11), "z": int(-16_763.3 * 2**11)}
-    speed = {"vx": int(-1.2 * 2**20), "vy": int(2.5 * 2**20), "vz": int(2.7 * 2**20)}
-    clock = {"ill": 0, "silent": 0, "quarter": 49, "drift": -700, "offset": -1_000_000}
-    return place | speed | clock | {"ax": -3, "ay": 2, "az": 1}
 
 
 @pytest.mark.parametrize("paged", [False, True])
 def test_beidou_says_what_was_encoded(paged: bool) -> None:
     numbers = orbit()
     gather = BeidouSubframes(paged)
-    *before, found = [gather.take(words, GPS_S) for words in written_subframes.beidou(numbers, SECOND, paged)]
+    *before, found = [gather.take(words, GPS_S) for words in beidou(numbers, SECOND, paged)]
     assert before == [None] * len(before)
     assert isinstance(found, Ephemeris)
     for name, unit in UNITS.items():
@@ -61,19 +41,17 @@ def test_beidou_says_what_was_encoded(paged: bool) -> None:
 @pytest.mark.parametrize("paged", [False, True])
 def test_of_two_turns_no_ephemeris_of_beidou_is_made(paged: bool) -> None:
     gather = BeidouSubframes(paged)
-    first = written_subframes.beidou(orbit(), SECOND, paged)
-    second = written_subframes.beidou(orbit(), SECOND + 30, paged)
+    first = beidou(orbit(), SECOND, paged)
+    second = beidou(orbit(), SECOND + 30, paged)
     assert not any(gather.take(words, GPS_S) for words in (*first[:-1], second[-1]))
-    assert not any(
-        gather.take(words, GPS_S) for words in written_subframes.beidou(orbit() | {"health": 1}, SECOND, paged)
-    )
+    assert not any(gather.take(words, GPS_S) for words in beidou(orbit() | {"health": 1}, SECOND, paged))
     assert gather.take((0x38901637,), GPS_S) is None
 
 
 def test_glonass_says_what_was_encoded() -> None:
     numbers = strings()
     gather = GlonassStrings()
-    *before, found = [gather.take(words, GPS_S) for words in written_subframes.glonass(numbers, 7)]
+    *before, found = [gather.take(words, GPS_S) for words in glonass(numbers, 7)]
     assert before == [None] * 3
     assert isinstance(found, GlonassEphemeris)
     assert found.offset == 1_000_000 * 2.0**-30
@@ -91,37 +69,16 @@ def test_glonass_says_what_was_encoded() -> None:
 @pytest.mark.parametrize("ill", [{"ill": 1}, {"silent": 1}])
 def test_an_ill_satellite_or_one_of_two_frames_gives_no_state(ill: dict[str, int]) -> None:
     gather = GlonassStrings()
-    assert not any(gather.take(words, GPS_S) for words in written_subframes.glonass(strings() | ill, 7))
-    torn = [*written_subframes.glonass(strings(), 7)[:3], written_subframes.glonass(strings(), 8)[3]]
+    assert not any(gather.take(words, GPS_S) for words in glonass(strings() | ill, 7))
+    torn = [
+        *glonass(strings(), 7)[:3],
+        glonass(strings(), 8)[3],
+    ]
     assert not any(gather.take(words, GPS_S) for words in torn)
 
 
-def test_a_glonass_satellite_of_a_receivers_log_has_its_place(tmp_path: Path) -> None:
-    toe_s = 3 * 86_400 + 9.25 * 3600 + 18
-    path = tmp_path / "rover.ubx"
-    about = {"gnssId": 6, "svId": 5, "sigId": 0, "numWords": 4}
-    sent = [
-        UBXMessage("RXM", "RXM-SFRBX", GET, **about, **{f"dwrd_{i:02}": word for i, word in enumerate(words, 1)})
-        for words in written_subframes.glonass(strings(), 7)
-    ]
-    said = [
-        UBXMessage(
-            "RXM",
-            "RXM-RAWX",
-            GET,
-            rcvTow=toe_s + k,
-            week=2381,
-            leapS=18,
-            numMeas=1,
-            prMes_01=2.1e7,
-            gnssId_01=6,
-            svId_01=5,
-            cno_01=40,
-            prValid_01=1,
-        )
-        for k in range(-5, 6)
-    ]
-    path.write_bytes(b"".join(one.serialize() for one in (said[0], *sent, *said[1:])))
+def test_satellites_of_a_receivers_log_have_their_places(tmp_path: Path) -> None:
+    path = rover(tmp_path / "rover.ubx")
     log = read(path)
     place, speed = (
         np.stack([log.value[:, log.index(f"R05.{name}")] for name in names], axis=1)
@@ -132,3 +89,53 @@ def test_a_glonass_satellite_of_a_receivers_log_has_its_place(tmp_path: Path) ->
     moved = start - speed[5] * 2.1e7 / 299_792_458  # on the way
     np.testing.assert_allclose(place[5], moved, atol=5.0)
     np.testing.assert_allclose(log.value[5, log.index("R05.clock_s")], 1_000_000 / 2**30, atol=1e-9)
+    place = np.array([log.value[5, log.index(f"C20.{axis}_m")] for axis in "xyz"])
+    assert np.linalg.norm(place) == pytest.approx(5282.6**2, rel=0.002)
+
+
+@pytest.mark.real
+def test_what_beidou_really_sent_comes_through(real_data: Path) -> None:
+    told = read_nav(real_data / POTSDAM / "BRDC00WRD_U_20161580000_01D_MN.rnx")
+    names = [name for name in told.kepler if name[0] == "C"]
+    assert {"C01", "C05", "C11"} <= set(names)
+    for name in names:
+        for row in range(len(told.kepler[name].toe)):
+            sent = Ephemeris(*(float(field[row]) for field in told.kepler[name]))
+            exact = {field: getattr(sent, field) / unit for field, unit in UNITS.items()}
+            numbers = {field: round(value) for field, value in exact.items()}
+            # the file's numbers are whole ones of these units, to the twelve digits that it has
+            assert all(abs(numbers[field] - exact[field]) < 1e-3 + 1e-11 * abs(exact[field]) for field in UNITS), name
+            numbers |= {"toc": numbers["toe_of_week"], "health": 0}
+            paged = sent.tilt != 0
+            gather = BeidouSubframes(paged)
+            *_, found = [gather.take(words, sent.toe) for words in beidou(numbers, int(sent.toe_of_week), paged)]
+            assert found is not None
+            times = sent.toe + np.array([-1800.0, 1800.0])
+            np.testing.assert_allclose(kepler.position(found, times), kepler.position(sent, times), atol=0.02)
+            np.testing.assert_allclose(kepler.clock(found, times), kepler.clock(sent, times), atol=1e-12)
+
+
+@pytest.mark.real
+def test_what_glonass_really_sent_comes_through(real_data: Path) -> None:
+    told = read_nav(real_data / POTSDAM / "brdc1580.16g")
+    assert len(told.glonass) > 20
+    for name, each in told.glonass.items():
+        for row in range(len(each.toe)):
+            toe, offset, drift, place, speed, pull = (field[row] for field in each)
+            exact = {
+                f"{of}{axis}": value / 1e3 * 2.0**power
+                for of, power, vector in (("", 11, place), ("v", 20, speed), ("a", 30, pull))
+                for axis, value in zip("xyz", vector, strict=True)
+            }
+            exact |= {"offset": -offset * 2.0**30, "drift": drift * 2.0**40}
+            numbers = {field: round(value) for field, value in exact.items()}
+            assert all(abs(numbers[field] - exact[field]) < 1e-3 for field in exact), name
+            moscow = (toe - 17 + 10_800) % 86_400
+            numbers |= {"ill": 0, "silent": 0, "quarter": round(moscow / 900)}
+            gather = GlonassStrings()
+            *_, found = [gather.take(words, toe - 600) for words in glonass(numbers, row)]
+            assert found is not None
+            assert found.toe == toe
+            for ours, theirs in ((found.start, place), (found.speed, speed), (found.pull, pull)):
+                np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-9)
+            np.testing.assert_allclose((found.offset, found.drift), (offset, drift), rtol=1e-9, atol=1e-18)

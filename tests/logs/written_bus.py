@@ -23,14 +23,14 @@ BO_ 512 Motion: 8 ECU
 """
 
 
-def mdf(path: Path) -> Path:
-    time = np.arange(ROWS) / 50
+def mdf(path: Path, count: int = ROWS, compression: int = 0) -> Path:
+    time = np.arange(count) / 50
     with MDF(version="4.10") as file:
         axes = [Signal(np.sin(time), time, name=f"a{axis}", unit="m/s^2") for axis in "xy"]
-        words = np.array([b"on", b"off"] * (ROWS // 2))
+        words = np.array([b"on", b"off"] * (count // 2))
         file.append([*axes, Signal(words, time, name="state", encoding="utf-8")], comment="imu")
         file.append([Signal(36 + time[::5], time[::5], name="speed", unit="km/h")], comment="wheel")
-        file.save(path, overwrite=True)
+        file.save(path, overwrite=True, compression=compression)
     return path
 
 

@@ -5,6 +5,10 @@ written as ones, so that whoever reads it sees it.
 """
 
 import re
+from pathlib import Path
+
+import numpy as np
+from pyubx2 import GET, UBXMessage
 
 # In the order in which it is sent: a number's name and how many bits of it follow, the highest first; _ is anything.
 _WORD_1 = "_:15 number:3 second:8 _:4"
@@ -92,3 +96,51 @@ def _twos(number: int, bits: int) -> str:
 def _signed(number: int, bits: int) -> str:
     """A sign and a size."""
     return f"{abs(number) | (1 << (bits - 1) if number < 0 else 0):0{bits}b}"
+
+
+WHOLE = {  # of no sign
+    "eccentricity": 12_345_678, "sqrt_a": int(5282.6 * 2**19), "toe_of_week": 259_200 // 8, "toc": 259_200 // 8,
+    "health": 0,
+}  # fmt: skip
+
+
+def orbit() -> dict[str, int]:
+    """Numbers that use all their bits, with the sign that they have."""
+    rng = np.random.default_rng(3)
+    drawn = {n: int(rng.integers(-(2 ** (b - 1)), 2 ** (b - 1))) for n, b in sizes(D1).items()}
+    return drawn | WHOLE
+
+
+def strings() -> dict[str, int]:
+    """A satellite over the equator at 12:15 of Moscow."""
+    place = {"x": (-15_000 * 2**11), "y": (12_000 * 2**11), "z": int(-16_763.3 * 2**11)}
+    speed = {"vx": int(-1.2 * 2**20), "vy": int(2.5 * 2**20), "vz": int(2.7 * 2**20)}
+    clock = {"ill": 0, "silent": 0, "quarter": 49, "drift": -700, "offset": -1_000_000}
+    return place | speed | clock | {"ax": -3, "ay": 2, "az": 1}
+
+
+TOE_S = 3 * 86_400 + 9.25 * 3600 + 18  # of the GPS week: 12:15 in Moscow
+
+
+def rover(path: Path) -> Path:
+    """What u-blox logs of R05, and of C20 a little later than the reference time of its orbit: eleven epochs."""
+    quarter = int(TOE_S - 900 - 14) // 8
+    near = orbit() | {"toe_of_week": quarter, "toc": quarter}
+    sent = [*_sent(6, 5, glonass(strings(), 7)), *_sent(3, 20, beidou(near, int(TOE_S) - 20))]
+    said = [_raw(TOE_S + k) for k in range(-5, 6)]
+    path.write_bytes(b"".join(one.serialize() for one in (said[0], *sent, *said[1:])))
+    return path
+
+
+def _sent(system: int, satellite: int, words: list[tuple[int, ...]]) -> list[UBXMessage]:
+    about = {"gnssId": system, "svId": satellite, "sigId": 0, "numWords": len(words[0])}
+    each = ({f"dwrd_{i:02}": word for i, word in enumerate(one, 1)} for one in words)
+    return [UBXMessage("RXM", "RXM-SFRBX", GET, **about, **one) for one in each]
+
+
+def _raw(second: float) -> UBXMessage:
+    told: dict[str, float] = {"rcvTow": second, "week": 2381, "leapS": 18, "numMeas": 2}
+    for i, (system, satellite) in enumerate(((6, 5), (3, 20)), 1):
+        told |= {f"prMes_{i:02}": 2.1e7, f"gnssId_{i:02}": system, f"svId_{i:02}": satellite}
+        told |= {f"cno_{i:02}": 40, f"prValid_{i:02}": 1}
+    return UBXMessage("RXM", "RXM-RAWX", GET, **told)

@@ -45,16 +45,16 @@ def command(
 ) -> None:
     """List the faults of a log: when, which sensor and channel, what kind.
 
-    Without --model the method is fitted on the log's own beginning, which is then taken as healthy.
+    Without --model the method is fitted on the log's own beginning, which is then taken as healthy; of a long log
+    that is read part by part, on no more than four million numbers.
     """
     from sensorfault.export import check
 
     for out in outs:
         check(out)
     work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
-    if long.judged_by_parts(log, by_parts, model_path):
-        assert model_path is not None
-        told = long.detect(log, vehicle, model_path, report_path)
+    if long.by_parts(log, by_parts):
+        told = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), report_path)
         _write(told.events, told.log, log, outs, json_path)
         show.write_json(json_path, long.answer(told))
         return

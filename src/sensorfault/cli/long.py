@@ -1,7 +1,7 @@
 """What verbs do with a log that is too long to be read whole."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sensorfault.cli import show, work
 
@@ -10,9 +10,20 @@ if TYPE_CHECKING:
 
     from sensorfault.detection import Detection
     from sensorfault.faults.fault import Fault
+    from sensorfault.logs import Log
     from sensorfault.logs.joining import Said
     from sensorfault.logs.summary import Summing
     from sensorfault.long_log import LongDetection
+    from sensorfault.model import Model
+
+
+class Wanted(NamedTuple):
+    """The model to judge by; or what to fit, and on what share of the log."""
+
+    model: Path | None
+    method: str
+    learn: float
+    seed: int
 
 
 def by_parts(path: Path, said: bool | None) -> bool:
@@ -20,19 +31,6 @@ def by_parts(path: Path, said: bool | None) -> bool:
     from sensorfault.logs.parts import is_long_log
 
     return is_long_log(path) if said is None else said
-
-
-def judged_by_parts(path: Path, said: bool | None, model: Path | None) -> bool:
-    """The same where it is to be judged.
-
-    Raises:
-        LogError: said so, without a model.
-    """
-    from sensorfault.logs import LogError
-
-    if said and model is None:
-        raise LogError(f"{path}: --by-parts needs a --model, which 'sensorfault fit' writes from a shorter log.")
-    return model is not None and by_parts(path, said)
 
 
 def summed(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
@@ -49,26 +47,40 @@ def summed(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
 
 
 def detect(
-    path: Path, vehicle: Path | None, model_path: Path, report: Path | None = None, truth: "Sequence[Fault]" = ()
+    path: Path,
+    vehicle: Path | None,
+    wanted: Wanted,
+    report: Path | None = None,
+    truth: "Sequence[Fault]" = (),
 ) -> "LongDetection":
     """Read and judge part by part, say what reading found, and draw the `report`."""
     from sensorfault.evaluation.page import write_sketch
     from sensorfault.evaluation.page_sketch import Sketch
     from sensorfault.long_log import detect_long
+    from sensorfault.methods.fit import fit
     from sensorfault.store import load
 
-    model, sketches = load(model_path), list[Sketch]()
+    work.check_learn(wanted.learn)
+    sketches = list[Sketch]()
 
     def see(part: "Detection", share: float) -> None:
         if not sketches:
             sketches.append(Sketch(part))
         sketches[0].take(part, share)
 
+    def fitted(early: "Log") -> "Model":
+        return fit(early, wanted.method, held_out=0.0, seed=wanted.seed)
+
+    model = load(wanted.model) if wanted.model is not None else fitted
     with show.reading(path.name) as tell:
-        found = detect_long(model, path, vehicle, tell, see if report is not None else None)
+        found = detect_long(model, path, vehicle, tell, see if report is not None else None, wanted.learn)
     _say(found.log.name, found.rows, found.end_s, found.notes)
+    told = work.own_limits(found.model, *found.fitted_on_s) if found.fitted_on_s else work.limits(found.model)
+    if found.fitted_on_s:
+        for sentence in told:
+            show.say(sentence)
     if report is not None:
-        write_sketch(sketches[0], report, truth, summary=work.limits(model), notes=found.notes)
+        write_sketch(sketches[0], report, truth, summary=told, notes=found.notes)
         show.say(f"Wrote {report}.")
     return found
 
@@ -77,8 +89,9 @@ def answer(found: "LongDetection") -> dict[str, Any]:
     """The JSON of it."""
     return {
         "log": found.log.name,
-        "method": found.method,
+        "method": found.model.method,
         "judged_s": [float(found.log.time[0]), found.end_s],
+        "fitted_on_s": found.fitted_on_s,
         "notes": list(found.notes),
         "events": [event.as_dict() for event in found.events],
     }

@@ -30,7 +30,7 @@ by_parts_option = click.option(
     "by_parts",
     default=None,
     help="Read part by part, in memory that does not grow with the file. By itself where a file is larger than 1 GB "
-    "and its format allows it; to judge it so takes a --model.",
+    "and its format allows it.",
 )
 seed_option = click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
 

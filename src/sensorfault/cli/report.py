@@ -40,9 +40,8 @@ def command(
 
     work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
     truth = work.read_truth(truth_path) if truth_path else ()
-    if long.judged_by_parts(log, by_parts, model_path):
-        assert model_path is not None
-        told = long.detect(log, vehicle, model_path, out, truth)
+    if long.by_parts(log, by_parts):
+        told = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), out, truth)
         show.say(f"{len(told.events)} fault events.")
         show.write_json(json_path, long.answer(told))
         return

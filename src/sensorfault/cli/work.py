@@ -68,8 +68,8 @@ def read_log(path: Path, vehicle: Path | None) -> "Log":
     size, memory = sum(file.stat().st_size for file in files_of(path)), _memory()
     if size > memory:
         raise LogError(
-            f"{path}: {size / 1e9:.3g} GB cannot be read whole in {memory / 1e9:.3g} GB of memory; fit on a shorter "
-            "log, and give its --model to 'sensorfault detect --by-parts'."
+            f"{path}: {size / 1e9:.3g} GB cannot be read whole in {memory / 1e9:.3g} GB of memory; give a shorter log, "
+            "or let detect, report and info read one file of most formats part by part (--by-parts)."
         )
     with show.reading(path.name) as tell:
         log = read(path, vehicle, tell=tell)
@@ -89,12 +89,21 @@ class Ready:
     sentences: tuple[str, ...]
 
 
-def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: int) -> Ready:
-    """Load the model; without one, fit on the log's own beginning and judge the rest."""
+def check_learn(learn: float) -> None:
+    """Before the work: the share of the log to fit on.
+
+    Raises:
+        LogError: it is none.
+    """
     from sensorfault.logs import LogError
 
-    if not 0.05 <= learn <= 0.95:
+    if not 0.05 <= learn <= 0.95:  # click takes NaN for a number
         raise LogError(f"--learn is {learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
+
+
+def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: int) -> Ready:
+    """Load the model; without one, fit on the log's own beginning and judge the rest."""
+    check_learn(learn)
     if model_path is not None:
         from sensorfault.store import load
 
@@ -108,16 +117,22 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
         task = bar.add_task(f"fitting {method}", total=None)
         model = fit(log.between(end_s=cut), method, held_out=0.0, seed=seed)
         bar.update(task, total=1, completed=1)
-    told: tuple[str, ...] = (
-        f"No model was given: {method} was fitted on the log's own beginning, {show.clock(start)} to "
-        f"{show.clock(cut)}, taken as healthy; only the rest was judged.",
-        "A fault in that beginning is learned, not found, and the false-alarm rate is not known: "
-        "fit on a drive you trust with 'sensorfault fit' to know both.",
-    )
-    told = (*told, *suspects(model), *not_watched(model))
+    told = own_limits(model, start, cut)
     for sentence in told:
         show.say(sentence)
     return Ready(model, log.between(cut), (start, cut), told)
+
+
+def own_limits(model: "Model", start_s: float, end_s: float) -> tuple[str, ...]:
+    """What it means that a model was fitted on the log that it judges."""
+    return (
+        f"No model was given: {model.method} was fitted on the log's own beginning, {show.clock(start_s)} to "
+        f"{show.clock(end_s)}, taken as healthy; only the rest was judged.",
+        "A fault in that beginning is learned, not found, and the false-alarm rate is not known: "
+        "fit on a drive you trust with 'sensorfault fit' to know both.",
+        *suspects(model),
+        *not_watched(model),
+    )
 
 
 def limits(model: "Model") -> tuple[str, ...]:

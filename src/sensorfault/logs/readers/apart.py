@@ -1,6 +1,6 @@
 """Libraries that damage can make end the interpreter, or fill the memory: they read in a process of their own.
 
-That lives on for the next file, is told on each line of its input, as JSON, a file and where to put what it found, and
+That lives on for the next file, is told on each line of its input, as JSON, where to put what it found and a file, and
 answers with a line: nothing, or why the file cannot be read.
 """
 
@@ -45,15 +45,15 @@ class Loaded:
         return cls(vectors, told)
 
 
-def load_apart(loader: str, path: Path) -> Loaded:
-    """What the `load` of the module of this name finds in a file.
+def load_apart(loader: str, path: Path, *more: Any) -> Loaded:
+    """What the `load` of the module of this name finds in a file; `more`: what it is told beside the file, as JSON can.
 
     Raises:
         ValueError: why it cannot be read.
     """
     with tempfile.TemporaryDirectory(prefix="sensorfault-") as folder:
         into = str(Path(folder) / "vectors.npz")
-        answer = _asked(loader, [str(path.absolute()), into], _LONGEST_S + path.stat().st_size / _BYTES_PER_S)
+        answer = _asked(loader, [into, str(path.absolute()), *more], _LONGEST_S + path.stat().st_size / _BYTES_PER_S)
         if answer:
             raise ValueError(answer)
         return Loaded.saved(into)
@@ -64,7 +64,7 @@ def reason(error: BaseException) -> str:
     return (str(error).splitlines() or [""])[0].rstrip(".") or type(error).__name__
 
 
-def _asked(loader: str, question: list[str], longest_s: float) -> str:
+def _asked(loader: str, question: list[Any], longest_s: float) -> str:
     """What the other process answers; one that ends or does not answer is replaced."""
     process = _process(loader)
     try:

@@ -19,10 +19,10 @@ def main() -> None:
     answers, sys.stdout = sys.stdout, sys.stderr
     limit = _limit()
     for line in sys.stdin:
-        path, into = json.loads(line)
+        into, path, *more = json.loads(line)
         limit(Path(path).stat().st_size)
         try:
-            load(path).save(into)
+            load(path, *more).save(into)
             answer = ""
         except BaseException as error:
             answer = reason(error)

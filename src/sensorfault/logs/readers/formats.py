@@ -63,7 +63,7 @@ FORMATS = (
     Format("ArduPilot DataFlash", ("*.bin",), remembering(read_dataflash), parts=True),
     Format("ArduPilot DataFlash text", ("*.log",), remembering(read_dataflash_text), looks_dataflash_text, parts=True),
     Format("MAVLink telemetry", ("*.tlog",), remembering(read_tlog), parts=True),
-    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), remembering(read_mdf), looks_mdf),
+    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), remembering(read_mdf), looks_mdf, parts=True),
     Format("CAN recording", ("*.blf", "*.asc"), remembering(read_can), parts=True),
     Format("u-blox", ("*.ubx",), remembering(read_ubx)),
     Format("NMEA", ("*.nmea", "*.txt", "*.log"), remembering(read_nmea), looks_nmea),

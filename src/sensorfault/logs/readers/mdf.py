@@ -6,12 +6,15 @@ from pathlib import Path
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.apart import load_apart
+from sensorfault.logs.readers.apart import Loaded, load_apart
 from sensorfault.logs.readers.extra import missing
+from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.mdf_load import TIME
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import known, spelled
+
+_NOTHING = Loaded({}, {"lost": []})
 
 
 def read_mdf(path: Path, ask: Ask) -> Tables:
@@ -22,24 +25,46 @@ def read_mdf(path: Path, ask: Ask) -> Tables:
     """
     if find_spec("asammdf") is None:
         raise missing(path, "asammdf", "bus")
+    handing = Handing(ask)
     try:
-        loaded = load_apart("mdf_load", path)
+        loaded = load_apart("mdf_load", path, 0 if handing.asked else None)
     except ValueError as error:
         raise LogError(f"{path}: not a whole MDF file ({error}); export it again.") from None
-    lost, others = loaded.told["lost"], loaded.told["others"]
-    if not loaded.vectors:
+    damage, others = _lost(loaded), loaded.told["others"]
+    parts = loaded.told["parts"] if handing.asked else 1
+    for part in range(1, parts):
+        handing.on(_tables(path, ask, loaded))
+        ask.tell(part / parts)
+        try:
+            loaded = load_apart("mdf_load", path, part)
+        except ValueError as error:
+            damage.append(Damage(f"the file can be read no further ({error})", f"part {part + 1} of {parts}"))
+            loaded = _NOTHING
+            break
+        damage += _lost(loaded)
+        others = max(others, loaded.told["others"])
+    tables = handing.rest(_tables(path, ask, loaded))
+    if not tables and ask.tables is None:
         raise LogError(f"{path}: no channel group with a clock and numbers in this MDF file; export it again.")
-    damage = [
-        Damage(f"a channel group cannot be read ({why})", f"'{name}'", "the others were read") for name, why in lost
-    ]
     said = [f"{path.name}: {counted(others, 'channel')} of texts or arrays left out."] if others else []
+    return told(tables, said, dict.fromkeys(damage))
+
+
+def _lost(loaded: Loaded) -> list[Damage]:
+    return [
+        Damage(f"a channel group cannot be read ({why})", f"'{name}'", "the others were read")
+        for name, why in loaded.told["lost"]
+    ]
+
+
+def _tables(path: Path, ask: Ask, loaded: Loaded) -> Tables:
     tables = {}
     for name, columns in loaded.vectors.items():
         if ask.wants(name):
             written = loaded.told["units"][name].items()
             units = {column: spelled(unit) for column, unit in written if known(unit)}
             tables[name] = Source(path, pl.DataFrame(columns), TIME, "s", units=units)
-    return told(tables, said, damage)
+    return tables
 
 
 def looks_mdf(head: bytes) -> bool:

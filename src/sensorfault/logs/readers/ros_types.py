@@ -26,10 +26,12 @@ _UNITS = tuple(
     )
 )
 
+_KNOWN = ("sensor_msgs/", "geometry_msgs/", "nav_msgs/", "foxglove.", "foxglove_msgs/")
+
 
 def si_unit_of(kind: str, field: str) -> str:
     """The unit of a field of one of ROS's or Foxglove's own types of sensors and motion; empty for others."""
-    if not kind.startswith(("sensor_msgs/", "geometry_msgs/", "nav_msgs/", "foxglove.")):
+    if not kind.startswith(_KNOWN):
         return ""
     return next((unit for pattern, unit in _UNITS if pattern.search(field)), "")
 

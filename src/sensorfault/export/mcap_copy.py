@@ -1,0 +1,49 @@
+"""A recording written once more, as far as it is whole."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from sensorfault.logs.readers.mcap_records import MAGIC, records
+from sensorfault.logs.readers.telling import TellingFile
+
+
+def profile_of(source: Path) -> str:
+    """What the recording's header says of its kind: `ros2`."""
+    from mcap.records import Header
+
+    first = next(_whole(source), None)
+    return str(first.profile) if isinstance(first, Header) else ""
+
+
+def copy(source: Path, writer: Any, before: Callable[[int], None]) -> None:
+    """Messages with all their times, attachments and metadata; `before`: hears each message's time [ns] before it."""
+    from mcap.records import Attachment, Channel, Message, Metadata, Schema
+
+    schemas, channels = {0: 0}, dict[int, int]()
+    for record in _whole(source):
+        if isinstance(record, Message):
+            if record.channel_id in channels:
+                before(record.log_time)
+                number = channels[record.channel_id]
+                writer.add_message(number, record.log_time, record.data, record.publish_time, record.sequence)
+        elif isinstance(record, Schema):
+            if record.id not in schemas:
+                schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
+        elif isinstance(record, Channel):
+            if record.id not in channels and record.schema_id in schemas:
+                about = record.topic, record.message_encoding, schemas[record.schema_id], record.metadata
+                channels[record.id] = writer.register_channel(*about)
+        elif isinstance(record, Attachment):
+            one = record
+            writer.add_attachment(one.create_time, one.log_time, one.name, one.media_type, one.data)
+        elif isinstance(record, Metadata):
+            writer.add_metadata(record.name, record.metadata)
+
+
+def _whole(source: Path) -> Any:
+    """The records that can be read; where they cannot, reading the log has told."""
+    with TellingFile(source, lambda share: None) as file:
+        file.seek(len(MAGIC))
+        for record, _ in records(file, source.stat().st_size, lambda where: None, lambda where: None):
+            yield record
