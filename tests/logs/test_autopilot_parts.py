@@ -159,3 +159,21 @@ def test_what_is_said_of_the_file_has_a_place_where_its_last_part_has_no_row(tmp
     assert len(parts) > 5
     assert rest.keys() >= parts[0].keys()
     assert {one.damage for one in rest.values()} == {next(iter(rest.values())).damage} != {()}
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("name", ["pyulog_sample/sample.ulg", "copter_jd2014/jd_204405.bin"])
+def test_real_flights(real_data: Path, name: str) -> None:
+    """What is measured is the same; a gap of just three periods is filled in the one and not in the other."""
+    path = real_data / "uav" / name
+    vehicle = guess(path)
+    whole, parts = read(path, vehicle), list[Log]()
+    with small_parts(20_000):
+        said = read_parts(path, parts.append, vehicle)
+    assert len(parts) > 10
+    time, value = np.concatenate([one.time for one in parts]), np.concatenate([one.value for one in parts])
+    told, mine = np.isfinite(whole.value).any(axis=1), np.isfinite(value).any(axis=1)
+    np.testing.assert_allclose(time[mine], whole.time[told], atol=1e-6)
+    np.testing.assert_array_equal(value[mine], whole.value[told])
+    assert abs(len(time) - len(whole)) < 5
+    assert said.damage == whole.damage
