@@ -189,7 +189,7 @@ class Tracker:
             # No tick came in a hole: who was heard before it was not silent in it.
             silence = silence - np.where(time - silence < end, length, 0.0)
         silent = silence > self._watch.silent_after_s
-        missing: dict[tuple[str, str | None], tuple[float, float]] = {}
+        missing: dict[tuple[str, str | None], tuple[float, float, float]] = {}
         if silent.any():
             for sensor, channels in self._of.items():
                 if silent[channels].all():
@@ -202,19 +202,20 @@ class Tracker:
         for name in [name for name in self._silent if name not in missing]:
             one = self._silent.pop(name)
             ended.append(self._miss(name, one, one.last_s))
-        for name, (since, allowed) in missing.items():
+        for name, (since, lasts, allowed) in missing.items():
             one = self._silent.setdefault(name, _Open(since, time, limit=allowed))
-            one.last_s, one.score = time, time - one.start_s
+            one.last_s, one.score = time, lasts
         longest = max(GAP_S, float(self._watch.silent_after_s.max()))
         if gap_s > longest:
             gap = time - gap_s, time, "sensor", None, None, "miss", gap_s, longest, self._watch.method
             ended.append(Event(*gap))
         return ended
 
-    def _since(self, now: float, channels: list[int], silence: Float[np.ndarray, " C"]) -> tuple[float, float]:
+    def _since(self, now: float, channels: list[int], silence: Float[np.ndarray, " C"]) -> tuple[float, float, float]:
+        """When the first of them should have spoken again; how long it has been silent, and may be."""
         first = channels[int(np.argmin(silence[channels]))]
         start = now - silence[first] + self._watch.period_s[first]
-        return float(start), float(self._watch.silent_after_s[first])
+        return float(start), float(silence[first]), float(self._watch.silent_after_s[first])
 
     def _miss(self, name: tuple[str, str | None], one: _Open, end_s: float | None) -> Event:
         sensor, channel = name

@@ -104,3 +104,24 @@ def test_ticks_stay_with_their_sensor(tmp_path: Path) -> None:
     ]
     log, _, _ = by_parts(flown(tmp_path, lines))
     np.testing.assert_allclose(log.time, 0.01 * np.arange(2000), atol=1e-6)
+
+
+def test_places_are_told_from_the_beginning_of_the_file_and_once(tmp_path: Path) -> None:
+    lines = flight(2000)
+    del lines[1503:1507]
+    lines[1800] = f"IMU, 18000000, {1.5}, x, 0\n"
+    notes = assert_same(flown(tmp_path, lines))
+    assert [note for note in notes if "gap" in note] == [
+        "flight.log (IMU): 1 gap longer than 3 periods of 0.01 s, the longest 0.05 s at 15.020 s; left as gaps."
+    ]
+
+
+def test_the_edge_of_a_part_is_no_loss(tmp_path: Path) -> None:
+    assert assert_same(flown(tmp_path, flight(2000))) == []
+
+
+def test_a_jump_ahead_is_told_where_it_is(tmp_path: Path) -> None:
+    lines = flight(2000)
+    lines[1500:] = [line.replace(", ", ", 99", 1) for line in lines[1500:]]
+    _, notes, _ = by_parts(flown(tmp_path, lines))
+    assert any("its clock jumps by 99" in note and "at 14.990 s" in note for note in notes)

@@ -68,8 +68,8 @@ def read_log(path: Path, vehicle: Path | None) -> "Log":
     size, memory = sum(file.stat().st_size for file in files_of(path)), _memory()
     if size > memory:
         raise LogError(
-            f"{path}: {size / 1e9:.3g} GB cannot be read whole in {memory / 1e9:.3g} GB of memory; "
-            "leave out --whole, or name one file of a format that is read part by part."
+            f"{path}: {size / 1e9:.3g} GB cannot be read whole in {memory / 1e9:.3g} GB of memory; give a shorter log, "
+            "or let detect, report and info read one file of most formats part by part (--by-parts)."
         )
     with show.reading(path.name) as tell:
         log = read(path, vehicle, tell=tell)

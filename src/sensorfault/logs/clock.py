@@ -64,7 +64,8 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
     kept = time[rows]
     if len(rows) < 2:
         raise LogError(f"{source.path}: one row is no log; name a file with at least two rows at different times.")
-    return Clock(zero + float(kept[0]), kept - kept[0], rows, (*notes, *faults, *_unsteady(name, kept)))
+    begin = float(kept[0]) if source.begin_s is None else source.begin_s - zero
+    return Clock(zero + float(kept[0]), kept - kept[0], rows, (*notes, *faults, *_unsteady(name, kept, begin)))
 
 
 def seconds(source: Source, column: str, unit: str) -> tuple[float, np.ndarray]:
@@ -149,8 +150,8 @@ def _longest_rise(time: np.ndarray) -> np.ndarray:
     return rise
 
 
-def _unsteady(name: str, time: np.ndarray) -> list[str]:
-    """Sentences on gaps and jitter."""
+def _unsteady(name: str, time: np.ndarray, begin: float) -> list[str]:
+    """Sentences on gaps and jitter, places told from `begin`."""
     step = np.diff(time)
     period = usual_step(time)
     notes = []
@@ -159,7 +160,7 @@ def _unsteady(name: str, time: np.ndarray) -> list[str]:
         worst = int(np.argmax(step))
         notes.append(
             f"{name}: {counted(len(gaps), 'gap')} longer than {GAP:g} periods of {period:.4g} s, the longest "
-            f"{step[worst]:.4g} s at {time[worst] - time[0]:.3f} s; left as gaps."
+            f"{step[worst]:.4g} s at {time[worst] - begin:.3f} s; left as gaps."
         )
     off = float(np.quantile(np.abs(step - period), 0.95))
     if off > _JITTER * period:

@@ -8,7 +8,7 @@ import numpy as np
 
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.late import Late
-from sensorfault.logs.one_clock import put_on_one_clock
+from sensorfault.logs.one_clock import Piece, put_on_one_clock
 from sensorfault.logs.read import log_of
 from sensorfault.logs.readers.source import Source, Tables, joined
 from sensorfault.logs.stream import read_stream
@@ -42,6 +42,7 @@ class Joining:
     before: Tables = field(default_factory=dict)
     handed_s: float = -np.inf  # up to here
     seen_s: float = -np.inf  # the last tick of the parts before
+    begin_s: float | None = None  # the first tick's reading
     ticks: str | None = None  # the stream whose rows they are
     damage: dict[str, None] = field(default_factory=dict)
     notes: dict[str, None] = field(default_factory=dict)
@@ -56,7 +57,7 @@ class Joining:
         tables = self._late.without(tables, self.handed_s + (self.known.zero_s or 0.0))
         both = joined(self.before, tables)
         new = {name for name, source in tables.items() if len(source.frame)}
-        log = self._log(both, new) if new or last else None
+        log = self._log(both, new, last) if new or last else None
         if log is None:
             self.before = both
             return
@@ -93,7 +94,7 @@ class Joining:
         else:
             self.more += 1
 
-    def _log(self, tables: Tables, new: set[str]) -> Log | None:
+    def _log(self, tables: Tables, new: set[str], last: bool) -> Log | None:
         """What is there of the described log, the sensors of absent tables without a value; None if nothing is.
 
         `new`: the tables that have brought something since the part before.
@@ -113,7 +114,9 @@ class Joining:
         present = replace(self.known, sensors=tuple(s for s in self.known.sensors if s.file in there))
         fastest = min(able or streams, key=lambda one: one.period_s * (_STAYS if one.name == self.ticks else 1))
         self.ticks = fastest.name
-        clock = put_on_one_clock(streams, ticks=fastest)
+        begin_s = fastest.zero_s if self.begin_s is None else self.begin_s
+        clock = put_on_one_clock(streams, piece=Piece(fastest, begin_s, first=self.begin_s is None, last=last))
+        self.begin_s = begin_s
         if self.known.zero_s is None:  # the first part's beginning is that of all
             self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
             present = replace(present, zero_s=self.known.zero_s)

@@ -17,6 +17,7 @@ class _Table:
 
     source: Source
     column: str
+    begin_s: float | None = None
     rows: int = 0
     late: int = 0
     first: str = ""
@@ -37,13 +38,15 @@ class Late:
     def _kept(self, source: Source, entry: FileEntry, handed_s: float) -> Source:
         column, unit = entry.time or source.time or "", source.unit or entry.unit
         table = self._tables.setdefault(source.table, _Table(source, column))
-        source = replace(source, before=table.rows)
+        source = replace(source, before=table.rows, begin_s=table.begin_s)
         table.rows += len(source.frame)
         if entry.tag is not None or column not in source.frame.columns:
             return source
         if not source.frame[column].dtype.is_numeric() or not source.frame[column].count():
             return source
         zero_s, time = seconds(source, column, unit)
+        if table.begin_s is None:
+            table.begin_s = zero_s
         late = zero_s + entry.offset_s + time <= handed_s
         if not late.any():
             return source

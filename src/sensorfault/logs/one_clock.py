@@ -26,8 +26,21 @@ class OneClock:
     notes: tuple[str, ...] = ()
 
 
-def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", ticks: Stream | None = None) -> OneClock:
-    """Put every stream on the ticks of the fastest, unless others are named.
+@dataclass(frozen=True)
+class Piece:
+    """Streams that are a piece of a longer log. `ticks`: whose rows they are. `begin_s`: reading at the log's start.
+
+    `first`, `last`: whether its first rows are among them, and its last; else what lies beyond the ticks is no loss.
+    """
+
+    ticks: Stream
+    begin_s: float
+    first: bool
+    last: bool
+
+
+def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: Piece | None = None) -> OneClock:
+    """Put every stream on the ticks of the fastest.
 
     A slower stream's row goes to the first tick at or after its own time; of two rows for one tick the later stays.
     Where the fastest file has a gap, ticks of its usual period go on, so that its silence can be noticed.
@@ -35,24 +48,27 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", ticks: 
     if len(streams) == 1 and resample == "hold":
         (only,) = streams
         return OneClock(only.zero_s, only.time, only.value, only.fresh)
-    fastest = ticks or min(streams, key=lambda stream: stream.period_s)
-    at, notes = _filled(fastest) if len(streams) > 1 else (fastest.time, [])
+    if piece is None:
+        fastest = min(streams, key=lambda stream: stream.period_s)
+        piece = Piece(fastest, fastest.zero_s, first=True, last=True)
+    fastest = piece.ticks
+    at, notes = _filled(piece) if len(streams) > 1 else (fastest.time, [])
     values, marks = [], []
     for stream in streams:
         time = stream.time + (stream.zero_s - fastest.zero_s)
         if resample == "linear":
             value, fresh = _interpolated(at, time, stream)
         else:
-            value, fresh, note = _placed(at, time, stream, fastest)
+            value, fresh, note = _placed(at, time, stream, piece)
             notes += note
         values.append(value)
         marks.append(fresh)
     return OneClock(fastest.zero_s, at, np.concatenate(values, axis=1), np.concatenate(marks, axis=1), tuple(notes))
 
 
-def _filled(fastest: Stream) -> tuple[np.ndarray, list[str]]:
+def _filled(piece: Piece) -> tuple[np.ndarray, list[str]]:
     """The ticks, and new ones inside each gap; a clock that jumps leaves a gap without, and a sentence says so."""
-    time, period = fastest.time, fastest.period_s
+    time, period, begin = piece.ticks.time, piece.ticks.period_s, piece.begin_s - piece.ticks.zero_s
     step = np.diff(time)
     gaps = np.flatnonzero(step > GAP * period)
     count = np.round(step[gaps] / period) - 1
@@ -64,24 +80,24 @@ def _filled(fastest: Stream) -> tuple[np.ndarray, list[str]]:
         for i, ticks in zip(gaps[filled], count[filled], strict=True)
     ]
     notes = [
-        f"{fastest.name}: its clock jumps by {step[i]:.6g} s at {time[i]:.3f} s, too far for a gap in a log of "
-        f"{len(time)} rows; no ticks were put there."
+        f"{piece.ticks.name}: its clock jumps by {step[i]:.6g} s at {time[i] - begin:.3f} s, too far for a gap in a "
+        f"log of {len(time)} rows; no ticks were put there."
         for i in gaps[~filled][:1]
     ]
     return np.sort(np.concatenate([time, *new])), notes
 
 
 def _placed(
-    ticks: np.ndarray, time: np.ndarray, stream: Stream, fastest: Stream
+    ticks: np.ndarray, time: np.ndarray, stream: Stream, piece: Piece
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Each row on the first tick at or after its time."""
     shape = (len(ticks), stream.value.shape[1])
     value, fresh = np.full(shape, np.nan), np.zeros(shape, bool)
     # The fastest's own rows lie on ticks exactly; what came long before the first tick is no news at it.
     tick = np.searchsorted(ticks, time - SAME_S, side="left")
-    inside = (tick < len(ticks)) & (time > ticks[0] - stream.period_s)
-    rows = np.flatnonzero(inside)
-    outside = len(time) - len(rows)
+    early, late = time <= ticks[0] - (stream.period_s if piece.first else SAME_S), tick == len(ticks)
+    rows = np.flatnonzero(~(early | late))
+    outside = int((early & piece.first | late & piece.last).sum())
     last = np.append(tick[rows][1:] != tick[rows][:-1], True) if len(rows) else np.zeros(0, bool)
     later = rows[last]
     value[tick[later]], fresh[tick[later]] = stream.value[later], stream.fresh[later]
@@ -91,8 +107,8 @@ def _placed(
     notes = []
     if outside:
         notes.append(
-            f"{stream.name}: {counted(outside, 'row')} before the first or after the last row of {fastest.name}, whose "
-            "rows are the log's ticks, left out."
+            f"{stream.name}: {counted(outside, 'row')} before the first or after the last row of {piece.ticks.name}, "
+            "whose rows are the log's ticks, left out."
         )
     if len(rows) > len(later):
         lost = counted(len(rows) - len(later), "row")

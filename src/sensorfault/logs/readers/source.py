@@ -54,7 +54,7 @@ class Source:
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
     `times`: the file that its time column stands in, where that is another.
-    `before`: rows of the table in parts of the file that were read before this one.
+    `before`: rows of the table in parts of the file that were read before this one; `begin_s`: its first reading there.
     `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
     """
 
@@ -70,6 +70,7 @@ class Source:
     table: str = ""
     times: Path | None = None
     before: int = 0
+    begin_s: float | None = None
 
     @property
     def name(self) -> str:
