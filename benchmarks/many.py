@@ -83,7 +83,7 @@ def networks() -> Work:
         return nets, order.reshape(count, BATCHES, BATCH)
 
     examples = OnDevice(rows, first, rows[LENGTH:, :2])
-    return Work("LSTMs in training, float32", trained, examples, own, SIZES[:4], 1e-2)
+    return Work("LSTMs in training, float32", trained, examples, own, SIZES[:3], 1e-2)
 
 
 def works() -> list[Work]:
