@@ -1,6 +1,7 @@
 """The runners' edges: rows from a log, one sample at a time, many vehicles at once."""
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -37,6 +38,11 @@ def test_a_fleet_has_a_leading_axis_everywhere() -> None:
     states, verdict = fleet(monitor, *two, lambda report: report.verdict)
     assert verdict.channel.shape == (2, 3, 3)
     assert states.seen.shape == (2, 3)
+
+
+def test_what_was_put_nowhere_is_computed_on_the_cpu() -> None:
+    """Also where there is a GPU: a single log would take it hundreds of times as long."""
+    assert {device.platform for device in jnp.zeros(1).devices()} == {"cpu"}
 
 
 def test_a_step_answers_with_plain_numbers(stepper: Stepper) -> None:

@@ -1,4 +1,4 @@
-"""JAX as this package needs it: float64, steps on the calling thread, small loops compiled as one function.
+"""JAX as this package needs it: float64, steps on the calling thread of a CPU, small loops compiled as one function.
 
 Must come before JAX's first computation; after it these settings have no effect but on speed and precision.
 """
@@ -17,3 +17,7 @@ import jax  # noqa: E402
 jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
 # Handing a step of 20 microseconds to another thread costs more than the step.
 jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
+# A log through a monitor is a chain of small steps, of which a GPU takes hundreds of times as long for one vehicle; it
+# gains where many run at once, and computes what is put there (jax.device_put, or with jax.default_device).
+if not jax.config.jax_platforms and jax.config.jax_default_device is None:  # type: ignore[attr-defined]
+    jax.config.update("jax_default_device", "cpu")  # type: ignore[no-untyped-call]

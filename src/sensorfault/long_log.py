@@ -22,14 +22,13 @@ EARLY = 1 << 22  # numbers, 32 MB of them, that a model is fitted on where none 
 class LongDetection:
     """What was found in a log that was never in memory as a whole.
 
-    `log` is its first judged row, with its names and clock. `notes`: what reading found. `fitted_on_s`: from where to
-    where the log was taken as healthy, if the model is its own.
+    `log` is the first and the last row that were judged, with its names and clock. `notes`: what reading found.
+    `fitted_on_s`: from where to where the log was taken as healthy, if the model is its own.
     """
 
     log: Log
     model: Model
     rows: int
-    end_s: float
     events: tuple[Event, ...]
     notes: tuple[str, ...]
     fitted_on_s: tuple[float, float] | None = None
@@ -77,10 +76,10 @@ def detect_long(
             judging = _Judging(_taken(fit(beginning), path), see, read)
 
     said = read_parts(path, take, vehicle, heard)
-    if judging is None or judging.first is None:
+    if judging is None or judging.ends is None:
         raise LogError(f"{path}: it is too short to be fitted on and judged part by part; read it whole.")
     events = tuple(judging.follower.events)
-    return LongDetection(judging.first, judging.model, judging.rows, judging.end_s, events, said.notes, fitted_on_s)
+    return LongDetection(judging.ends, judging.model, judging.rows, events, said.notes, fitted_on_s)
 
 
 def _taken(model: Model, path: Path) -> Model:
@@ -96,22 +95,25 @@ class _Judging:
 
     def __init__(self, model: Model, see: Callable[[Detection, float], None] | None, read: float = 0.0) -> None:
         self.model, self.follower = model, Follower(model)
-        self.first: Log | None = None
-        self.rows, self.end_s = 0, 0.0
+        self.ends: Log | None = None  # the first row and the last
+        self.rows = 0
         self._see, self._read = see, read
         self._state = model.monitor.init()
 
     def take(self, part: Log, read: float) -> None:
         """The next part; `read`: the share of the file that has been."""
         log = self.model.take(part)
-        if self.first is None:
-            self.first = replace(log, time=log.time[:1], value=log.value[:1], fresh=log.fresh[:1])
+        self.ends = _joined([_row(self.ends or log, 0), _row(log, -1)])
         self._state, told = replay_on(self.model.monitor, self._state, log)
         self.follower.take(log, told)
-        self.rows, self.end_s = self.rows + len(log), float(log.time[-1])
+        self.rows += len(log)
         if self._see is not None:
             self._see(detected(self.model, log, told, self.follower.events), read - self._read)
             self._read = read
+
+
+def _row(log: Log, i: int) -> Log:
+    return replace(log, time=log.time[[i]], value=log.value[[i]], fresh=log.fresh[[i]])
 
 
 def _joined(parts: list[Log]) -> Log:

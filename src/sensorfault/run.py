@@ -59,7 +59,10 @@ def fleet(
     rows: Sample,
     keep: Callable[[Report], Kept] = everything,  # type: ignore[assignment]
 ) -> tuple[MonitorState, Kept]:
-    """Many vehicles, or many injected faults, through one monitor: `states` and `rows` have a leading axis."""
+    """Many vehicles, or many injected faults, through one monitor: `states` and `rows` have a leading axis.
+
+    It runs where they lie: `jax.device_put` brings all three to a GPU, which is worth it for a thousand or more.
+    """
     return jax.vmap(lambda state, one: replay(monitor, state, one, keep))(states, rows)
 
 

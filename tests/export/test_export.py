@@ -12,6 +12,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
+from logs.written_ros import bag2
 from logs.written_ros import mcap as recorded
 from sensorfault.events import Event
 from sensorfault.export import write_events
@@ -118,6 +119,20 @@ def test_a_recording_is_copied_with_all_that_it_holds(tmp_path: Path) -> None:
     assert summary.statistics.message_count == 100 + 7 + 9
     spans = [(chunk.message_start_time, chunk.message_end_time) for chunk in summary.chunk_indexes]
     assert all(end <= start for (_, end), (start, _) in pairwise(spans))  # a viewer that seeks loads one
+
+
+def test_a_recording_in_several_files_is_one(tmp_path: Path) -> None:
+    only = bag2(tmp_path / "drive", mcap=True, seconds=2.0)
+    first = only.rename(only.with_name("drive_0.mcap"))
+    first.with_name("drive_1.mcap").write_bytes(first.read_bytes())
+    write_events(EVENTS, log(), tmp_path / "told.mcap", first)
+    with (tmp_path / "told.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    topics = [channel.topic for channel in summary.channels.values()]
+    assert len(topics) == len(set(topics))
+    own = [one for one in messages(tmp_path / "told.mcap") if "/sensorfault" not in one[0]]
+    assert len(own) == 2 * len(messages(first))
 
 
 def test_of_a_damaged_recording_what_is_whole_is_copied(tmp_path: Path) -> None:

@@ -2,12 +2,15 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from asammdf import MDF, Signal
 
 from logs import written_bus
 from sensorfault.logs import Log, LogError, guess, read
+from sensorfault.logs.readers import mdf_load
 from sensorfault.logs.readers.apart import load_apart
 
 
@@ -32,6 +35,23 @@ def test_the_process_that_reads_mdf_is_asked_for_stretches_of_time(tmp_path: Pat
     loaded = load_apart("mdf_load", written_bus.mdf(tmp_path / "drive.mf4"), 0)
     assert loaded.told["parts"] == 1
     assert len(loaded.vectors["imu"]["ax"]) == written_bus.ROWS
+
+
+def test_a_channel_with_fewer_values_than_its_clock_costs_its_group(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = MDF(written_bus.mdf(tmp_path / "drive.mf4"))
+    whole = file.get
+
+    def get(**asked: Any) -> Signal:
+        signal = whole(**asked)
+        return Signal(signal.samples[:3], signal.timestamps[:3], name="speed") if signal.name == "speed" else signal
+
+    monkeypatch.setattr(file, "get", get)
+    monkeypatch.setattr(mdf_load, "_mdf", lambda path: file)
+    loaded = mdf_load.load(str(tmp_path / "drive.mf4"))
+    assert loaded.vectors.keys() == {"imu"}
+    assert loaded.told["lost"] == [["wheel", "its channel 'speed' has not as many values as its clock"]]
 
 
 @pytest.mark.parametrize("write", [written_bus.blf, written_bus.asc])

@@ -57,6 +57,16 @@ def test_an_epoch_ends_with_a_new_pseudorange() -> None:
     np.testing.assert_array_equal(block.ahead, np.arange(18)[1::EVERY] + 0.6)
 
 
+def test_a_doppler_of_another_frequency_is_none() -> None:
+    mixed = log()
+    names = [replace(channel, sensor=channel.sensor.replace("G02", "C02")) for channel in mixed.channels]
+    mixed = replace(mixed, channels=tuple(names))
+    epochs = framing(mixed, ("G01", "C02"), True, "wheel.speed").frame(mixed)
+    np.testing.assert_array_equal(epochs.value[1], [105.0, 205.0, 106.0, np.nan])
+    assert not epochs.fresh[:, 3].any()
+    assert np.isfinite(mixed.value[5, 16:]).all()  # the log itself keeps it
+
+
 def test_the_rows_between_are_its_own() -> None:
     block = how().frame(log()).block
     np.testing.assert_allclose(block.dt[0], [0.0, 0.1, 0, 0, 0, 0])  # of the first row nobody knows how long it was

@@ -197,6 +197,21 @@ def test_a_long_log_is_guessed_from_its_beginning(tmp_path: Path, monkeypatch: p
     assert any("only its beginning was looked at" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("way", ["blf", "asc", "mf4"])
+def test_of_a_long_recording_of_a_car_only_the_beginning_is_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str
+) -> None:
+    write_it = {"blf": written_bus.blf, "asc": written_bus.asc, "mf4": written_bus.mdf}[way]
+    path = write_it(tmp_path / f"drive.{way}", 300)
+    monkeypatch.setattr(can_bus, "PART", 100)
+    monkeypatch.setattr(mdf_load, "PART", 100)
+    monkeypatch.setattr(mdf, "load_apart", lambda loader, file, part: mdf_load.load(str(file), part))
+    rows = {name: len(one.frame) for name, one in beginning.read_beginning(path).items()}
+    whole = {name: len(one.frame) for name, one in read_tables(path).items()}
+    assert rows.keys() == whole.keys()
+    assert all(0 < rows[name] < 0.8 * whole[name] for name in whole)
+
+
 def test_the_parts_of_a_bag_are_long_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     only = bag2(tmp_path / "drive", True, 2.0)
     first = only.rename(only.with_name("drive_0.mcap"))

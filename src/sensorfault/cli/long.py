@@ -74,7 +74,7 @@ def detect(
     model = load(wanted.model) if wanted.model is not None else fitted
     with show.reading(path.name) as tell:
         found = detect_long(model, path, vehicle, tell, see if report is not None else None, wanted.learn)
-    _say(found.log.name, found.rows, found.end_s, found.notes)
+    _say(found.log.name, found.rows, float(found.log.time[-1]), found.notes)
     told = work.own_limits(found.model, *found.fitted_on_s) if found.fitted_on_s else work.limits(found.model)
     if found.fitted_on_s:
         for sentence in told:
@@ -90,7 +90,7 @@ def answer(found: "LongDetection") -> dict[str, Any]:
     return {
         "log": found.log.name,
         "method": found.model.method,
-        "judged_s": [float(found.log.time[0]), found.end_s],
+        "judged_s": [float(found.log.time[0]), float(found.log.time[-1])],
         "fitted_on_s": found.fitted_on_s,
         "notes": list(found.notes),
         "events": [event.as_dict() for event in found.events],

@@ -1,9 +1,10 @@
 """A recording written once more, as far as it is whole."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from pathlib import Path
 from typing import Any
 
+from sensorfault.logs.readers.bag2 import parts_of
 from sensorfault.logs.readers.mcap_records import MAGIC, records
 from sensorfault.logs.readers.telling import TellingFile
 
@@ -17,23 +18,35 @@ def profile_of(source: Path) -> str:
 
 
 def copy(source: Path, writer: Any, before: Callable[[int], None]) -> None:
-    """Messages with all their times, attachments and metadata; `before`: hears each message's time [ns] before it."""
+    """All files of a recording; `before`: hears each message's time [ns] before it."""
+    known: dict[Hashable, int] = {}
+    for part in parts_of(source):
+        _copy(part, writer, before, known)
+
+
+def _copy(part: Path, writer: Any, before: Callable[[int], None], known: dict[Hashable, int]) -> None:
+    """Messages with all their times, attachments and metadata; `known`: schemas and channels that are written."""
     from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
+    def once(register: Callable[..., int], *about: Any) -> int:
+        key = (register, *(tuple(sorted(one.items())) if isinstance(one, dict) else one for one in about))
+        if key not in known:
+            known[key] = register(*about)
+        return known[key]
+
     schemas, channels = {0: 0}, dict[int, int]()
-    for record in _whole(source):
+    for record in _whole(part):
         if isinstance(record, Message):
             if record.channel_id in channels:
                 before(record.log_time)
                 number = channels[record.channel_id]
                 writer.add_message(number, record.log_time, record.data, record.publish_time, record.sequence)
         elif isinstance(record, Schema):
-            if record.id not in schemas:
-                schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
+            schemas[record.id] = once(writer.register_schema, record.name, record.encoding, record.data)
         elif isinstance(record, Channel):
-            if record.id not in channels and record.schema_id in schemas:
-                about = record.topic, record.message_encoding, schemas[record.schema_id], record.metadata
-                channels[record.id] = writer.register_channel(*about)
+            if record.schema_id in schemas:
+                kind = record.message_encoding, schemas[record.schema_id], record.metadata
+                channels[record.id] = once(writer.register_channel, record.topic, *kind)
         elif isinstance(record, Attachment):
             one = record
             writer.add_attachment(one.create_time, one.log_time, one.name, one.media_type, one.data)

@@ -10,6 +10,7 @@ from sensorfault.logs.table import Channel, Log, LogError, Sensor
 
 PLACE = ("x_m", "y_m", "z_m")
 SPEED = ("vx_m_s", "vy_m_s", "vz_m_s")
+ON_L1 = "GEJ"  # systems whose Doppler is of L1
 RANGE, DOPPLER, CN0 = "corrected_m", "doppler_hz", "cn0_dbhz"
 LATE = 5.0  # times its usual length: a longer row is a hole
 
@@ -44,7 +45,8 @@ class Framing:
     """How a log becomes epochs: an epoch ends with the row in which a pseudorange is new, or with the R-th row.
 
     `satellites`: by name, those that the log lacks stay silent. `inertial`: paths of the gyro's x, y, z and the
-    accelerometer's, or none. `wheel`: path of the speed by the wheels, or none. `rates`: range rates as well.
+    accelerometer's, or none. `wheel`: path of the speed by the wheels, or none. `rates`: range rates as well, by the
+    Dopplers of satellites on L1.
     `rows`: R. `tick_s`: the usual length of a row, `period_s`: of an epoch.
     """
 
@@ -146,6 +148,9 @@ class Framing:
         """Inertial rows (T, 6), the wheels' speed (T,), what is told of each satellite (T, S, n), what of it is new."""
         rows, lead = len(value), len(self.inertial) + bool(self.wheel)
         sky = value[:, lead:].reshape(rows, len(self.satellites), -1)
+        if self.rates:
+            sky = sky.copy()
+            sky[:, [one[0] not in ON_L1 for one in self.satellites], self.names.index(DOPPLER)] = np.nan
         new = fresh[:, lead:].reshape(sky.shape)[:, :, : len(self.names)]
         imu = value[:, : len(self.inertial)] if self.inertial else np.full((rows, 6), np.nan)
         return imu, value[:, lead - 1] if self.wheel else np.full(rows, np.nan), sky, new

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.logs.epochs import Framing, framing
+from sensorfault.logs.epochs import ON_L1, Framing, framing
 from sensorfault.logs.satellites import satellites
 from sensorfault.logs.table import Log, LogError
 from sensorfault.model import Model, owners
@@ -23,7 +23,6 @@ from sensorfault.stage import Stage
 from sensorfault.vehicles.train import ElevationNoise, Grade
 
 SYSTEMS = {"G": 32, "R": 27, "E": 36, "C": 63, "J": 10}  # how many satellites each numbers
-ONE_FREQUENCY = "GEJ"  # systems whose Doppler is of L1
 WHEEL = "wheel.speed"
 MOST = 3  # satellites left out at one epoch
 FEW = 60  # epochs to fit on
@@ -45,7 +44,7 @@ class Filter:
 
 
 def framed(name: str, log: Log) -> Framing:
-    """How the log becomes epochs: a slot for each satellite that its systems number, Dopplers where all are of L1.
+    """How the log becomes epochs: a slot for each satellite that its systems number, Dopplers where some are of L1.
 
     Raises:
         LogError: no satellite has a corrected pseudorange and a place, or there are too few epochs.
@@ -54,7 +53,7 @@ def framed(name: str, log: Log) -> Framing:
     letters = [letter for letter in SYSTEMS if any(one[0] == letter for one in seen.names)]
     most = {letter: max(int(one[1:]) for one in seen.names if one[0] == letter) for letter in letters}
     names = tuple(f"{x}{i:02d}" for x in letters for i in range(1, max(SYSTEMS[x], most[x]) + 1))
-    rates = set(letters) <= set(ONE_FREQUENCY) and bool(np.isfinite(seen.doppler).any())
+    rates = bool(np.isfinite(seen.doppler[:, [one[0] in ON_L1 for one in seen.names]]).any())
     wheel = WHEEL if any(channel.path == WHEEL for channel in log.channels) else ""
     how = framing(log, names, rates, wheel)
     epochs = int((np.isfinite(seen.corrected).sum(axis=1) >= LEAST).sum())

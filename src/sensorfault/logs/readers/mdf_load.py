@@ -117,6 +117,8 @@ class _File:
             if signal.samples.ndim != 1 or signal.samples.dtype.kind not in "biuf":
                 others += 1
                 continue
+            if len(signal.samples) != len(columns[TIME]):
+                raise ValueError(f"its channel '{signal.name}' has not as many values as its clock")
             value = native(signal.samples)
             if signal.invalidation_bits is not None:
                 value = np.where(signal.invalidation_bits, np.nan, value)
