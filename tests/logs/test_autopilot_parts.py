@@ -8,13 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from logs import written_ardupilot, written_dataflash, written_ulog
+import fitted
+from logs import written_ardupilot, written_dataflash, written_rig, written_ulog
 from logs.small_parts import small_parts
-from sensorfault.logs import Log, LogError, guess, read
+from sensorfault.detector import detect
+from sensorfault.logs import Log, LogError, VehicleFile, guess, read
 from sensorfault.logs.parts import read_parts
 from sensorfault.logs.readers import dataflash_pieces
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Tables
+from sensorfault.long_log import detect_long
 
 CONTENT = {
     ".ulg": written_ulog.flight(20.0),
@@ -159,6 +162,20 @@ def test_what_is_said_of_the_file_has_a_place_where_its_last_part_has_no_row(tmp
     assert len(parts) > 5
     assert rest.keys() >= parts[0].keys()
     assert {one.damage for one in rest.values()} == {next(iter(rest.values())).damage} != {()}
+
+
+@pytest.mark.parametrize("suffix", written_rig.WRITTEN)
+def test_the_events_are_those_of_the_whole(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"flight{suffix}"
+    path.write_bytes(written_rig.WRITTEN[suffix](fitted.lying().log))
+    vehicle = VehicleFile.parse(written_rig.VEHICLE)
+    whole = detect(fitted.model(), read(path, vehicle)).events
+    with small_parts(5000):
+        told = detect_long(fitted.model(), path, vehicle).events
+    assert len(told) == len(whole) > 5
+    for mine, theirs in zip(told, whole, strict=True):
+        assert (mine.sensor, mine.channel, mine.kind) == (theirs.sensor, theirs.channel, theirs.kind)
+        assert (mine.start_s, mine.end_s) == pytest.approx((theirs.start_s, theirs.end_s), abs=1e-6)
 
 
 @pytest.mark.real

@@ -39,8 +39,10 @@ def read_parts(
     """Read one file and hand it over part by part: `take` hears consecutive pieces of what `read` would return.
 
     Each part is read with the one before it, so that what is held, or comes at another rate, is what it is in the whole
-    log. Two things are not: periods and a recording's clock are told from a part, not from all of it. Without a
-    vehicle.toml the columns are guessed, of a long file from its beginning.
+    log. Two things are not: periods and a recording's clock are told from a part, not from all of it. What
+    has times that were handed on before, as a clock goes back or a sensor is written down late, is left out and said;
+    of a sensor slower than the parts its first row, too. Without a vehicle.toml the columns are guessed, of a long file
+    from its beginning.
 
     Raises:
         LogError: a format that cannot be read in parts, or whatever keeps a part from being used.
