@@ -55,6 +55,16 @@ def test_numbers_and_units_as_the_log_describes_them(tmp_path: Path) -> None:
     assert (table.units["Lat"], table.units["Tilt"]) == ("deg", "deg")
 
 
+@pytest.mark.parametrize(("form", "columns"), [(b"Qf", b"TimeUS,a\nb"), (b"Qf", b"TimeUS,a,b"), (b"Qd", b"TimeUS,a")])
+def test_a_kind_described_with_contradictions_is_left_out_and_said(tmp_path: Path, form: bytes, columns: bytes) -> None:
+    odd = b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", 140, 15, b"ODD", form, columns)
+    odd += b"".join(b"\xa3\x95\x8c" + struct.pack("<Qf", 3_000_000 + k, k) for k in range(20))
+    tables = read_tables(put(tmp_path, flight() + odd))
+    assert "ODD" not in tables
+    assert tables["IMU"].notes == ("flight.bin: messages described with contradictions left out: 'ODD'.",)
+    assert tables["IMU"].damage == ()
+
+
 def test_several_imus_are_several_tables(tmp_path: Path) -> None:
     vehicle = guess(put(tmp_path, flight(imus=2)))
     assert {file.table for file in vehicle.files} >= {"IMU", "IMU[1]"}

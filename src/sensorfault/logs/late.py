@@ -1,6 +1,7 @@
-"""Rows of a part whose clock has gone back behind what was handed on before: they are left out, and counted."""
+"""Rows of a part with times that were handed on before: they are left out, and counted."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -12,15 +13,30 @@ from sensorfault.logs.table import LogError
 
 
 @dataclass
-class _Table:
-    """Rows of it: all, those left out, and where the first of those stands."""
+class _Rows:
+    """How many, and where the first of them stands."""
 
-    source: Source
-    column: str
-    begin_s: float | None = None
-    rows: int = 0
-    late: int = 0
+    count: int = 0
     first: str = ""
+
+    def add(self, source: Source, these: np.ndarray) -> None:
+        if these.any():
+            self.count += int(these.sum())
+            self.first = self.first or source.place(int(np.argmax(these)))
+
+
+@dataclass
+class _Table:
+    """A table as far as it has been heard of. `back`: rows behind others of its own; `behind`: only of other tables."""
+
+    path: Path
+    name: str
+    column: str
+    rows: int = 0
+    begin_s: float | None = None
+    last_s: float = -np.inf
+    back: _Rows = field(default_factory=_Rows)
+    behind: _Rows = field(default_factory=_Rows)
 
 
 class Late:
@@ -37,7 +53,7 @@ class Late:
 
     def _kept(self, source: Source, entry: FileEntry, handed_s: float) -> Source:
         column, unit = entry.time or source.time or "", source.unit or entry.unit
-        table = self._tables.setdefault(source.table, _Table(source, column))
+        table = self._tables.setdefault(source.table, _Table(source.path, source.name, column))
         source = replace(source, before=table.rows, begin_s=table.begin_s)
         table.rows += len(source.frame)
         if entry.tag is not None or column not in source.frame.columns:
@@ -45,14 +61,14 @@ class Late:
         if not source.frame[column].dtype.is_numeric() or not source.frame[column].count():
             return source
         zero_s, time = seconds(source, column, unit)
-        if table.begin_s is None:
+        if table.begin_s is None and np.isfinite(zero_s):
             table.begin_s = zero_s
-        late = zero_s + entry.offset_s + time <= handed_s
-        if not late.any():
-            return source
-        table.late += int(late.sum())
-        table.first = table.first or source.place(int(np.argmax(late)))
-        return replace(source, frame=source.frame.filter(~late))
+        time = zero_s + entry.offset_s + time
+        late = time <= handed_s
+        table.back.add(source, late & (time <= table.last_s))
+        table.behind.add(source, late & (time > table.last_s))
+        table.last_s = float(np.fmax.reduce(time, initial=table.last_s))
+        return replace(source, frame=source.frame.filter(~late)) if late.any() else source
 
     def notes(self) -> list[str]:
         """What was left out.
@@ -62,13 +78,15 @@ class Late:
         """
         said = []
         for table in self._tables.values():
-            back = f"time '{table.column}' goes back (first {table.first})"
-            if table.late > HOPELESS * table.rows:
+            back = f"time '{table.column}' goes back (first {table.back.first})"
+            if table.back.count > HOPELESS * table.rows:
                 raise LogError(
-                    f"{table.source.path}: {back}, so {table.late} of {table.rows} rows are out of order; cut the file "
+                    f"{table.path}: {back}, so {table.back.count} of {table.rows} rows are out of order; cut the file "
                     "there, or name another time column."
                 )
-            if table.late:
-                lost = counted(table.late, "row")
-                said.append(f"{table.source.name}: {back}; {lost} left out.")
+            if table.back.count:
+                said.append(f"{table.name}: {back}; {counted(table.back.count, 'row')} left out.")
+            if table.behind.count:
+                lost = f"{counted(table.behind.count, 'row')} (first {table.behind.first})"
+                said.append(f"{table.name}: {lost} stand far behind other tables' rows of their time; left out.")
         return said
