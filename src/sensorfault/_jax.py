@@ -17,7 +17,7 @@ import jax  # noqa: E402
 jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
 # Handing a step of 20 microseconds to another thread costs more than the step.
 jax.config.update("jax_cpu_enable_async_dispatch", False)  # type: ignore[no-untyped-call]
-# A log through a monitor is a chain of small steps, of which a GPU takes hundreds of times as long for one vehicle; it
-# gains where many run at once, and computes what is put there (jax.device_put, or with jax.default_device).
+# A log through a monitor is a chain of small steps, for which a GPU takes twelve to thirty times as long. It gains
+# where many run at once, and computes what is put there (jax.device_put, or with jax.default_device).
 if not jax.config.jax_platforms and jax.config.jax_default_device is None:  # type: ignore[attr-defined]
     jax.config.update("jax_default_device", "cpu")  # type: ignore[no-untyped-call]

@@ -7,7 +7,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float, Int
 
-ROW = 32  # XLA takes a sum over more than these in two passes
+ROW = 32  # XLA takes a sum over an axis of more than these in two passes, and a live sample pays for each
 NAN = int(np.float32(np.nan).view(np.int32))  # of all bits of positive numbers the greatest
 
 
@@ -60,7 +60,7 @@ def _narrowed(key: Int[Array, "R 32"], k: int) -> tuple[Array, Array, Array, Arr
     def halve(bracket: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
         low, high, fewer, count = bracket
         middle = low + (high - low) // 2
-        within = (key <= middle).sum(axis=1, dtype=jnp.int32).sum(dtype=jnp.int32)
+        within = (key <= middle).sum(dtype=jnp.int32)
         few = within < k
         return (
             jnp.where(few, middle, low),

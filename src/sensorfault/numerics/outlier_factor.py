@@ -57,11 +57,5 @@ def _factor(near: Float[Array, "2 *s"], share: Float[Array, "*s"], distance: Flo
     # (11) reach(p, q) = max(kdist(q), d(p, q))
     reach = jnp.where(share > 0, share * jnp.maximum(near[0], distance), 0.0)
     # (13) LOF = mean lrd of the neighbours / lrd
-    factor: Float[Array, ""] = _total(share * near[1]) / density(_total(reach))
+    factor: Float[Array, ""] = (share * near[1]).sum() / density(reach.sum())
     return factor
-
-
-def _total(values: Float[Array, "*s"]) -> Float[Array, ""]:
-    # row by row: see ROW
-    total: Float[Array, ""] = values.sum(axis=-1).sum()
-    return total
