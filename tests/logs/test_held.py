@@ -62,7 +62,7 @@ def test_a_standstill_does_not_move_the_period() -> None:
     fresh = np.zeros((3000, 1), bool)
     fresh[::5] = True
     fresh[500:2000] = False
-    assert usual_period_s(time, fresh) == pytest.approx(0.1)
+    assert usual_period_s(time, fresh, 0.02) == pytest.approx(0.1)
 
 
 def test_a_held_sensor_of_a_file(tmp_path: Path) -> None:

@@ -10,7 +10,6 @@ from jaxtyping import Float, Int
 from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
-from sensorfault.logs.usual import usual_step
 
 GAP = 3.0  # a gap is longer than so many usual periods
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
@@ -21,17 +20,16 @@ _UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: what a rea
 
 @dataclass(frozen=True)
 class Clock:
-    """T rows that are kept. `zero_s`: the column's first reading [s]; `time` [s] counts from there."""
+    """T rows that are kept. `zero_s`: the column's first reading [s]; `time` [s] counts from there.
+
+    `period_s`: the usual time between two rows [s].
+    """
 
     zero_s: float
     time: Float[np.ndarray, " T"]
     rows: Int[np.ndarray, " T"]
+    period_s: float
     notes: tuple[str, ...]
-
-    @property
-    def period_s(self) -> float:
-        """The usual time between two rows [s]."""
-        return usual_step(self.time)
 
     @property
     def is_unix(self) -> bool:
@@ -61,11 +59,13 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
         lost = counted(len(time) - len(usable), "row")
         notes.append(f"{name}: {lost} without a time, first {source.place(bad)}, left out.")
     rows, faults = _rising(source, column, time, usable)
-    kept = time[rows]
     if len(rows) < 2:
         raise LogError(f"{source.path}: one row is no log; name a file with at least two rows at different times.")
-    begin = float(kept[0]) if source.begin_s is None else source.begin_s - zero
-    return Clock(zero + float(kept[0]), kept - kept[0], rows, (*notes, *faults, *_unsteady(name, kept, begin)))
+    first = float(time[rows[0]])
+    kept = (time if len(rows) == len(time) else time[rows]) - first
+    begin = 0.0 if source.begin_s is None else source.begin_s - zero - first
+    period, unsteady = _steadiness(name, kept, begin)
+    return Clock(zero + first, kept, rows, period, (*notes, *faults, *unsteady))
 
 
 def seconds(source: Source, column: str, unit: str) -> tuple[float, np.ndarray]:
@@ -111,10 +111,10 @@ def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
 
 def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """The most rows that rise strictly in time; a single wild reading costs one row, wherever it points."""
-    step = np.diff(time[usable])
-    back, repeat = int(np.sum(step < 0)), int(np.sum(step == 0))
-    if back + repeat == 0:
+    step = np.diff(time if len(usable) == len(time) else time[usable])
+    if not len(step) or step.min() > 0:
         return usable, []
+    back, repeat = int(np.sum(step < 0)), int(np.sum(step == 0))
     rows = usable[_longest_rise(time[usable])]
     dropped = len(usable) - len(rows)
     first = int(usable[1 + np.flatnonzero(step <= 0)[0]])
@@ -150,21 +150,23 @@ def _longest_rise(time: np.ndarray) -> np.ndarray:
     return rise
 
 
-def _unsteady(name: str, time: np.ndarray, begin: float) -> list[str]:
-    """Sentences on gaps and jitter, places told from `begin`."""
+def _steadiness(name: str, time: np.ndarray, begin: float) -> tuple[float, list[str]]:
+    """The usual step, and sentences on gaps and jitter, places told from `begin`."""
     step = np.diff(time)
-    period = usual_step(time)
+    least, most = float(step.min()), float(step.max())
+    period = float(np.median(step))
     notes = []
-    gaps = np.flatnonzero(step > GAP * period)
-    if len(gaps):
+    if most > GAP * period:
         worst = int(np.argmax(step))
         notes.append(
-            f"{name}: {counted(len(gaps), 'gap')} longer than {GAP:g} periods of {period:.4g} s, the longest "
-            f"{step[worst]:.4g} s at {time[worst] - begin:.3f} s; left as gaps."
+            f"{name}: {counted(int((step > GAP * period).sum()), 'gap')} longer than {GAP:g} periods of {period:.4g} "
+            f"s, the longest {most:.4g} s at {time[worst] - begin:.3f} s; left as gaps."
         )
-    off = float(np.quantile(np.abs(step - period), 0.95))
-    if off > _JITTER * period:
-        notes.append(
-            f"{name}: the time between rows jitters: {period:.4g} s usually, one in twenty off by {off:.2g} s or more."
-        )
-    return notes
+    if max(most - period, period - least) > _JITTER * period:  # else none is off by so much
+        off = float(np.quantile(np.abs(step - period), 0.95))
+        if off > _JITTER * period:
+            notes.append(
+                f"{name}: the time between rows jitters: {period:.4g} s usually, one in twenty off by {off:.2g} s or "
+                "more."
+            )
+    return period, notes

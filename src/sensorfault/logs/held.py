@@ -3,8 +3,6 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.logs.usual import usual_step
-
 HELD_SHARE = 0.3  # a sensor is held if more than this share of its measurements is repeated in the next row
 STALE = 10.0  # a receiver that brings nothing new for so many of its periods has fallen silent
 _REGULAR = 0.88  # share of measurements that last as long as usual, give or take a row
@@ -89,13 +87,16 @@ def fresh_rows(
     return fresh
 
 
-def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"]) -> float:
-    """Median time between new measurements [s]; NaN with fewer than two.
+def usual_period_s(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"], row_s: float) -> float:
+    """Median time between new measurements [s], between two rows `row_s`; NaN with fewer than two.
 
     A long standstill, where a held value cannot change, is one gap among many and does not move the median.
     """
-    at: Float[np.ndarray, " N"] = time[any_of(fresh)]
-    return usual_step(at) if len(at) > 1 else float("nan")
+    new = any_of(fresh)
+    if new.all():
+        return row_s
+    at: Float[np.ndarray, " N"] = time[new]
+    return float(np.median(np.diff(at))) if len(at) > 1 else float("nan")
 
 
 def _any_finite(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:

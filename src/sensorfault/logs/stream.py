@@ -13,7 +13,6 @@ from sensorfault.logs.readers.rtklib import read_tag
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
-from sensorfault.logs.usual import usual_step
 
 _NAMED = 6  # columns listed in one sentence
 _LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
@@ -21,21 +20,20 @@ _LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
 
 @dataclass(frozen=True)
 class Stream:
-    """T rows of one file, C channels of its sensors. `zero_s`: the reading of the common clock at time 0 [s]."""
+    """T rows of one file, C channels of its sensors.
+
+    `zero_s`: the reading of the common clock at time 0 [s]. `period_s`: the usual time between two rows [s].
+    """
 
     name: str
     zero_s: float
+    period_s: float
     time: Float[np.ndarray, " T"]
     value: Float[np.ndarray, "T C"]
     fresh: Bool[np.ndarray, "T C"]
     channels: tuple[Channel, ...]
     sensors: tuple[Sensor, ...]
     notes: tuple[str, ...]
-
-    @property
-    def period_s(self) -> float:
-        """The usual time between two rows [s]."""
-        return usual_step(self.time)
 
 
 def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...]) -> Stream:
@@ -61,7 +59,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
             f"{source.name}: {file.tag} ties its counter to GPS time; the counter runs "
             f"{abs(rate - 1) * 1e6:.1f} ppm {'slow' if rate > 1 else 'fast'}, which was corrected."
         )
-    time = clock.time * rate
+    time = clock.time if rate == 1.0 else clock.time * rate
     gaps = _Gaps(source)
     channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in sensors for c in s.channels)
     value = np.empty((len(time), len(channels)))
@@ -72,7 +70,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         for i, channel in enumerate(sensor.channels, at):
             value[:, i] = _channel(source, channel, clock, gaps, sensor.period_s is not None)
         fresh[:, own] = _fresh(source, sensor, value[:, own], clock)
-        period = sensor.period_s or usual_period_s(time, fresh[:, own])
+        period = sensor.period_s or usual_period_s(time, fresh[:, own], clock.period_s * rate)
         if sensor.held and sensor.epoch is not None:
             late = stale(time, fresh[:, own], period)
             value[late, own] = np.nan
@@ -81,7 +79,9 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         notes += _held_note(source.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
     notes += gaps.notes()
-    return Stream(source.name, zero, time, value, fresh, channels, tuple(described), tuple(notes))
+    return Stream(
+        source.name, zero, clock.period_s * rate, time, value, fresh, channels, tuple(described), tuple(notes)
+    )
 
 
 class _Gaps:
@@ -121,8 +121,9 @@ def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, s
             f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml, or write "
             "period_s into its sensor if that was silent."
         )
-    si: Float[np.ndarray, " T"] = to_si(value, channel.unit)  # always a new array
-    si[absent] = np.nan
+    si: Float[np.ndarray, " T"] = to_si(value, channel.unit)
+    if absent.any():
+        si = np.where(absent, np.nan, si)
     return si if len(clock.rows) == len(si) else si[clock.rows]
 
 

@@ -109,8 +109,9 @@ def si_unit(unit: str) -> str:
 
 
 def to_si(value: Number, unit: str) -> Number:
-    """`value` in `unit` -> SI."""
-    return value * _factor(unit)[1]
+    """`value` in `unit` -> SI; itself where that is its unit."""
+    factor = _factor(unit)[1]
+    return value if factor == 1.0 else value * factor
 
 
 def from_si(value: Number, unit: str) -> Number:

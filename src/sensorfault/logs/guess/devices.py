@@ -101,7 +101,7 @@ def _delivery(columns: Sequence[Column], source: Source, clock: Clock) -> Delive
     epoch = _epoch(source, value, clock) if held else None
     fresh = fresh_rows(value, held, None if epoch is None else _reading(source.frame[epoch], clock))
     arrived: Bool[np.ndarray, " T"] = np.any(fresh, axis=1)
-    return Delivery(held, epoch, arrived, usual_period_s(clock.time, fresh), share_old(value, fresh))
+    return Delivery(held, epoch, arrived, usual_period_s(clock.time, fresh, clock.period_s), share_old(value, fresh))
 
 
 def _epoch(source: Source, value: Float[np.ndarray, "T C"], clock: Clock) -> str | None:
