@@ -1,5 +1,6 @@
 """A long log, judged part by part: the events are those of the log as a whole."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from sensorfault import long_log
 from sensorfault.detection import Detection
 from sensorfault.detector import detect
 from sensorfault.logs import Log, LogError, read, write
+from sensorfault.logs.epochs import Framing
 from sensorfault.logs.readers import csv
 from sensorfault.long_log import detect_long
 from sensorfault.model import Model
@@ -65,3 +67,9 @@ def test_without_a_model_one_is_fitted_on_the_beginning(tmp_path: Path, monkeypa
     monkeypatch.undo()
     with pytest.raises(LogError, match="too short to be fitted on"):
         detect_long(fit, path)
+
+
+def test_a_model_of_epochs_is_a_sentence(tmp_path: Path) -> None:
+    model = replace(fitted.model(), framing=Framing(("G01",), (), "", False, 1, 1.0, 1.0))
+    with pytest.raises(LogError, match=r"epochs of satellites.*read it whole"):
+        detect_long(model, tmp_path / "drive.csv")

@@ -77,7 +77,7 @@ def detect_long(
 
     said = read_parts(path, take, vehicle, heard)
     if judging is None or judging.ends is None:
-        raise LogError(f"{path}: it is too short to be fitted on and judged part by part; read it whole.")
+        raise LogError(f"{path}: it is too short to be fitted on and judged part by part; read it whole (--whole).")
     events = tuple(judging.follower.events)
     return LongDetection(judging.ends, judging.model, judging.rows, events, said.notes, fitted_on_s)
 
@@ -85,7 +85,7 @@ def detect_long(
 def _taken(model: Model, path: Path) -> Model:
     if model.framing:
         raise LogError(
-            f"{path}: {model.method} judges epochs of satellites, which are not cut in parts; read it whole."
+            f"{path}: {model.method} judges epochs of satellites, which are not cut in parts; read it whole (--whole)."
         )
     return model
 
