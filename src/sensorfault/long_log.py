@@ -49,8 +49,7 @@ def detect_long(
     the file that it is.
 
     Raises:
-        LogError: as `read_parts` and `detect` say; a model of epochs, which are not cut between parts; or a file that
-            ends before there is enough to fit on.
+        LogError: as `read_parts` and `detect` say, or a model of epochs, which are not cut between parts.
     """
     given, fit = (model, None) if isinstance(model, Model) else (None, model)
     judging = None if given is None else _Judging(_taken(given, path), see)
@@ -63,21 +62,30 @@ def detect_long(
         tell(share)
 
     def take(part: Log) -> None:
-        nonlocal judging, fitted_on_s
         if judging is not None:
             judging.take(part, read)
             return
-        assert fit is not None
         early.append(part)
-        if read >= learn or sum(one.value.size for one in early) >= EARLY:
-            beginning = _joined(early)
-            early.clear()
-            fitted_on_s = float(beginning.time[0]), float(beginning.time[-1])
-            judging = _Judging(_taken(fit(beginning), path), see, read)
+        if read > learn or sum(one.value.size for one in early) >= EARLY:
+            begin(max(read, learn))
+
+    def begin(share: float) -> None:
+        """Fit on the beginning of what there is, the `share` of the file, and judge the rest of it."""
+        nonlocal judging, fitted_on_s
+        assert fit is not None
+        log = _joined(early)
+        early.clear()
+        rows = min(round(len(log) * learn / share), EARLY // len(log.channels), len(log) - 1)
+        cut_s = float(log.time[rows])
+        fitted_on_s = float(log.time[0]), cut_s
+        judging = _Judging(_taken(fit(log.between(end_s=cut_s)), path), see, share * rows / len(log))
+        judging.take(log.between(cut_s), share)
 
     said = read_parts(path, take, vehicle, heard)
-    if judging is None or judging.ends is None:
-        raise LogError(f"{path}: it is too short to be fitted on and judged part by part; read it whole (--whole).")
+    if judging is None:
+        begin(1.0)
+    assert judging is not None
+    assert judging.ends is not None
     events = tuple(judging.follower.events)
     return LongDetection(judging.ends, judging.model, judging.rows, events, said.notes, fitted_on_s)
 
