@@ -1,7 +1,10 @@
 """The runners' edges: rows from a log, one sample at a time, many vehicles at once."""
 
+import os
+import subprocess
+import sys
+
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -40,9 +43,14 @@ def test_a_fleet_has_a_leading_axis_everywhere() -> None:
     assert states.seen.shape == (2, 3)
 
 
-def test_what_was_put_nowhere_is_computed_on_the_cpu() -> None:
+def test_the_cpu_computes_what_was_put_nowhere_and_a_choice_made_before_counts() -> None:
     """Also where there is a GPU: a single log takes it twelve to thirty times as long."""
-    assert {device.platform for device in jnp.zeros(1).devices()} == {"cpu"}
+    tell = "import sensorfault._jax, jax; print(jax.config.jax_default_device)"
+    told = {}
+    for chosen in ("", "cpu"):
+        env = {name: value for name, value in os.environ.items() if name != "JAX_PLATFORMS"} | {"JAX_PLATFORMS": chosen}
+        told[chosen] = subprocess.run([sys.executable, "-c", tell], env=env, capture_output=True, text=True, check=True)
+    assert [one.stdout.strip() for one in told.values()] == ["cpu", "None"]
 
 
 def test_a_step_answers_with_plain_numbers(stepper: Stepper) -> None:

@@ -140,6 +140,10 @@ def test_what_cannot_be_read_in_parts_is_a_sentence(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
     with pytest.raises(LogError, match="there is no such file or folder"):
         read_parts(path, print)
+    (tmp_path / "log.tar.gz").write_bytes(b"x")
+    with pytest.raises(LogError, match="an archive of several files; unpack it"):
+        read_parts(tmp_path / "log.tar.gz", print)
+    (tmp_path / "log.tar.gz").unlink()
     (tmp_path / "log.mat").write_bytes(b"x")
     with pytest.raises(LogError, match="this is MATLAB, which is read whole"):
         read_parts(tmp_path / "log.mat", print)

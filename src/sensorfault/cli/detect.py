@@ -67,7 +67,7 @@ def command(
 
         write_page(found, report_path, summary=ready.sentences)
         show.say(f"Wrote {report_path}.")
-    show.write_json(json_path, work.answer(table, found, ready))
+    show.write_json(json_path, work.answer(ready.model, found.log, table.notes, ready.fitted_on_s, found.events))
 
 
 def _write(events: "Sequence[Event]", table: "Log", log: Path, outs: Sequence[Path], json_path: str | None) -> None:

@@ -87,14 +87,7 @@ def detect(
 
 def answer(found: "LongDetection") -> dict[str, Any]:
     """The JSON of it."""
-    return {
-        "log": found.log.name,
-        "method": found.model.method,
-        "judged_s": [float(found.log.time[0]), float(found.log.time[-1])],
-        "fitted_on_s": found.fitted_on_s,
-        "notes": list(found.notes),
-        "events": [event.as_dict() for event in found.events],
-    }
+    return work.answer(found.model, found.log, found.notes, found.fitted_on_s, found.events)
 
 
 def _say(name: str, rows: int, end_s: float, notes: tuple[str, ...]) -> None:

@@ -50,4 +50,4 @@ def command(
     found = work.detect(ready.model, ready.judged)
     write_page(found, out, truth, summary=ready.sentences)
     show.say(f"{len(found.events)} fault events. Wrote {out}.")
-    show.write_json(json_path, work.answer(table, found, ready))
+    show.write_json(json_path, work.answer(ready.model, found.log, table.notes, ready.fitted_on_s, found.events))

@@ -1,5 +1,6 @@
 """What verbs do to logs and models, with progress: read, find or fit the model, detect."""
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from sensorfault.cli import show
 
 if TYPE_CHECKING:
     from sensorfault.detection import Detection
+    from sensorfault.events import Event
     from sensorfault.faults.fault import Fault
     from sensorfault.logs import Log
     from sensorfault.model import Model
@@ -51,9 +53,12 @@ def read_truth(path: Path) -> "tuple[Fault, ...]":
         raise FaultError(f"{path}: not a text file; give the .truth.json that 'inject' wrote.") from None
 
 
-def _memory() -> int:
-    """Of this machine [bytes]."""
-    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+def _memory() -> float:
+    """Of this machine [bytes]; of a system that does not tell, as much as there need be."""
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return math.inf
 
 
 def read_log(path: Path, vehicle: Path | None) -> "Log":
@@ -204,15 +209,21 @@ def detect(model: "Model", log: "Log", what: str = "judging") -> "Detection":
         return detect(model, log, lambda share: bar.update(task, completed=share))
 
 
-def answer(log: "Log", found: "Detection", ready: Ready) -> dict[str, Any]:
-    """The JSON of a detection."""
+def answer(
+    model: "Model",
+    log: "Log",
+    notes: Sequence[str],
+    fitted_on_s: tuple[float, float] | None,
+    events: "Sequence[Event]",
+) -> dict[str, Any]:
+    """The JSON of a detection. `log`: what was judged; its first row and its last are enough."""
     return {
         "log": log.name,
-        "method": found.method,
-        "judged_s": [float(found.log.time[0]), float(found.log.time[-1])],
-        "fitted_on_s": ready.fitted_on_s,
-        "watched": [c.path for c, w in zip(ready.model.channels, ready.model.watched, strict=True) if w],
-        "not_watched": ready.model.summary.get("not_watched", {}),
-        "notes": list(log.notes),
-        "events": [event.as_dict() for event in found.events],
+        "method": model.method,
+        "judged_s": [float(log.time[0]), float(log.time[-1])],
+        "fitted_on_s": fitted_on_s,
+        "watched": [c.path for c, w in zip(model.channels, model.watched, strict=True) if w],
+        "not_watched": model.summary.get("not_watched", {}),
+        "notes": list(notes),
+        "events": [event.as_dict() for event in events],
     }

@@ -99,6 +99,22 @@ def format_of(path: Path) -> Format | None:
     return next(iter([*sure, *(one for one in named if one.looks is None), *named]))
 
 
+def known_format(path: Path) -> Format:
+    """The same.
+
+    Raises:
+        LogError: nothing reads a file of this name.
+    """
+    form = format_of(path)
+    if form is not None:
+        return form
+    if path.name.lower().endswith(_ARCHIVES):
+        raise LogError(
+            f"{path}: this is an archive of several files; unpack it, and name a log in it or a drive's folder."
+        )
+    raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {', '.join(SUFFIXES)}.")
+
+
 def read_source(path: Path, table: str | None = None) -> Source:
     """One table's columns; `table` says which, where the file holds several.
 
@@ -135,14 +151,7 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
     if not path.exists():
         raise LogError(f"{path}: there is no such file; look at the path.")
     try:
-        form = format_of(path)
-        if form is None and path.name.lower().endswith(_ARCHIVES):
-            raise LogError(
-                f"{path}: this is an archive of several files; unpack it, and name a log in it or a drive's folder."
-            )
-        if form is None:
-            known = ", ".join(SUFFIXES)
-            raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {known}.")
+        form = known_format(path)
         part = ask.part
         asked = replace(ask, part=lambda tables: part(_finished(tables))) if part is not None else ask
         tables = read_unpacked(path, lambda file: form.read(file, asked)) if is_packed(path) else form.read(path, asked)

@@ -53,7 +53,7 @@ def with_times(source: Source) -> Source:
     time = cells.cast(pl.Float64, strict=False)
     if time.null_count():
         raise LogError(f"{file}: '{cells.filter(time.is_null())[0]}' is no time; write one number a line.")
-    return replace(source, frame=source.frame.insert_column(0, time[:rows].alias(TIME)), times=file)
+    return replace(source, frame=source.frame.select(time[:rows].alias(TIME), pl.all()), times=file)
 
 
 def _is_column(path: Path) -> bool:
