@@ -18,14 +18,14 @@ from anfis_toolbox import ANFISRegressor
 from anfis_toolbox.membership import BellMF
 from common import Bars, describe_machine, seconds
 
-from sensorfault.methods.ranged import Filter, cubature, followed, monitor
+from sensorfault.methods.ranging.range_filter import Filter, cubature, followed, monitor
 from sensorfault.numerics.fuzzy import Anfis
 from sensorfault.numerics.innovation import features
-from sensorfault.studies.xu2023.run import through
-from sensorfault.studies.xu2023.scenario import TRAINED_S, scenario
 from sensorfault.training.fuzzy import Setting, fit_anfis
 from sensorfault.training.labelled import Labelled, unit_range
 from sensorfault.training.partition import grid
+from sensorfault_studies.xu2023.run import through
+from sensorfault_studies.xu2023.scenario import TRAINED_S, scenario
 
 EPOCHS, ROUNDS, PENALTY = 100, 2, 1e-6
 STEPS, RATES = (0.003, 0.01, 0.03, 0.1), (1e-5, 1e-4, 1e-3, 1e-2)

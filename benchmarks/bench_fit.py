@@ -17,10 +17,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from common import Bars, describe_machine, road_log, seconds
 
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.training.backprop import train_copy
 from sensorfault.training.elm import fit_elm
 from sensorfault.training.gradient import Plan
-from sensorfault.training.scaling import Scaling
 
 HIDDEN, C = 32, 1e3
 SEEDS = range(5)

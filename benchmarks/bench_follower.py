@@ -16,10 +16,10 @@ from common import Bars, describe_machine
 from jax import lax
 
 import sensorfault as sf
+from sensorfault.core.monitor import Monitor
 from sensorfault.methods.catalog import METHODS
-from sensorfault.monitor.monitor import Monitor
 from sensorfault.numerics.cubature import correct, observe, predict
-from sensorfault.run import Stepper, fleet, samples
+from sensorfault.runtime.runners import Stepper, fleet, samples
 from sensorfault.simulation.underwater import sail
 from sensorfault.training.session import SILENT
 

@@ -17,7 +17,7 @@ from long_logs import WAYS
 
 from sensorfault.logs import VehicleFile, guess, read
 from sensorfault.methods.fit import fit
-from sensorfault.store import save
+from sensorfault.runtime.store import save
 
 MEGABYTE, BAR_TIMES = 10**6, 1.1
 SLOW = {".tlog": 10}  # a file so much smaller will do: pymavlink takes a second for two megabytes

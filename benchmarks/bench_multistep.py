@@ -12,10 +12,10 @@ import numpy as np
 import torch
 from common import DATA, Bars, describe_machine
 
-from sensorfault.studies.multistep.flights import flight
-from sensorfault.studies.multistep.flown import Flown
 from sensorfault.training.fixes import Fixes
 from sensorfault.training.multistep import HIDDEN, train_steps
+from sensorfault_studies.multistep.flights import flight
+from sensorfault_studies.multistep.flown import Flown
 
 STEPS, SOME, EPOCHS = tuple(range(1, 16)), (1, 8, 15), 2
 BAR_S, BAR_TIMES = 60.0, 5.0

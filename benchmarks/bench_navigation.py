@@ -17,19 +17,19 @@ import numpy as np
 from common import Bars, describe_machine, seconds
 from navigator import navigate
 
+from sensorfault.core.monitor import Branch, Monitor, MonitorState
+from sensorfault.core.types import FAULT, Report
 from sensorfault.logs.epochs import framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.navigating import Filter, monitor, navigation
-from sensorfault.monitor.monitor import Branch, Monitor, MonitorState
-from sensorfault.monitor.statistic.normalised import Normalised
-from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.methods.gnss.gnss_ins import Filter, monitor, navigation
 from sensorfault.numerics.alignment import ALIGNED
-from sensorfault.replay import replay_log
-from sensorfault.run import replay, samples
+from sensorfault.runtime.replay import replay_log
+from sensorfault.runtime.runners import replay, samples
 from sensorfault.simulation import pseudorange
 from sensorfault.simulation.ride import recorded
 from sensorfault.simulation.train import ride
-from sensorfault.types import FAULT, Report
+from sensorfault.stages.statistic.normalised import Normalised
+from sensorfault.stages.threshold.fixed import Fixed
 
 RUN_S, SATELLITES, LIMIT, STEP_M = 413.0, 9, 5.0, 15.0
 EPOCHS, RUNS, TOGETHER, PEERS = 60, 1000, 50, 3

@@ -21,7 +21,7 @@ from river import linear_model, optim
 
 import sensorfault as sf
 from sensorfault.logs.table import Channel, Log, Sensor
-from sensorfault.methods import online_network
+from sensorfault.methods.arm import online_network
 from sensorfault.training.gradient import Plan
 from sensorfault.training.online import Learning
 from sensorfault.training.session import SILENT

@@ -14,9 +14,9 @@ import numpy as np
 from common import IMU, Bars, describe_machine, seconds
 
 import sensorfault as sf
-from sensorfault.replay import replay_log
-from sensorfault.run import fleet, replay, samples
-from sensorfault.types import Report, Verdict
+from sensorfault.core.types import Report, Verdict
+from sensorfault.runtime.replay import replay_log
+from sensorfault.runtime.runners import fleet, replay, samples
 
 HOUR_S, HZ = 3600.0, 50.0
 VEHICLES = 256

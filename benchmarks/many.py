@@ -12,15 +12,15 @@ from bench_navigation import EPOCHS, STEP_M, run
 from common import IMU
 
 import sensorfault as sf
+from sensorfault.core.monitor import Monitor, MonitorState
+from sensorfault.core.types import Report, Sample
 from sensorfault.methods.catalog import DEFAULT, METHODS
-from sensorfault.monitor.monitor import Monitor, MonitorState
-from sensorfault.run import replay, samples
+from sensorfault.runtime.runners import replay, samples
 from sensorfault.simulation.underwater import sail
 from sensorfault.training.gradient import begin, one_epoch
 from sensorfault.training.initial import new_lstm
 from sensorfault.training.session import SILENT
 from sensorfault.training.windows import OnDevice
-from sensorfault.types import Report, Sample
 
 SIZES = 1, 100, 1000, 10_000, 100_000
 RANGES, ROWS = 40, 500

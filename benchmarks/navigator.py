@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from sensorfault.methods.navigating import GRADE, SIGMA
+from sensorfault.methods.gnss.gnss_ins import GRADE, SIGMA
 from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
 from sensorfault.numerics.gnss.constants import EARTH_RATE_RAD_S, LIGHT_M_S
 from sensorfault.numerics.gnss.sight import distance, turned

@@ -5,13 +5,13 @@ from functools import cache
 
 import numpy as np
 
-from sensorfault.detection import Detection
-from sensorfault.detector import detect
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import Injected, inject
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.methods.fit import fit
-from sensorfault.model import Model
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.result import Detection
 
 HZ = 50
 FIX_EVERY = 5

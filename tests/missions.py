@@ -5,12 +5,12 @@ from functools import cache
 import jax.numpy as jnp
 import numpy as np
 
+from sensorfault.core.monitor import Monitor
+from sensorfault.core.types import Sample
 from sensorfault.logs.table import Log
-from sensorfault.methods.ranged import Filter, cubature, followed, monitor
-from sensorfault.monitor.monitor import Monitor
-from sensorfault.run import samples
+from sensorfault.methods.ranging.range_filter import Filter, cubature, followed, monitor
+from sensorfault.runtime.runners import samples
 from sensorfault.simulation.underwater import Mission, sail
-from sensorfault.types import Sample
 
 RANGES = 6, 10
 

@@ -14,8 +14,6 @@ from pathlib import Path
 import pytest
 
 from sensorfault.cli import main
-from sensorfault.detection import Detection
-from sensorfault.detector import detect
 from sensorfault.evaluation.judge import Outcome, judge
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
@@ -23,8 +21,10 @@ from sensorfault.faults.plan import plan
 from sensorfault.logs import read
 from sensorfault.logs.table import Log
 from sensorfault.methods.fit import fit
-from sensorfault.model import Model
-from sensorfault.tracker import QUIET_S
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.result import Detection
+from sensorfault.runtime.tracker import QUIET_S
 
 pytestmark = pytest.mark.real
 

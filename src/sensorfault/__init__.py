@@ -16,51 +16,51 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sensorfault.detection import Detection
-    from sensorfault.detector import Live, detect
+    from sensorfault.core.monitor import Monitor
+    from sensorfault.core.types import FAULT, OK, UNKNOWN, VERDICTS
     from sensorfault.evaluation.campaign import campaign
     from sensorfault.evaluation.judge import judge
-    from sensorfault.evaluation.page import write_page
-    from sensorfault.events import Event
-    from sensorfault.export import write_events
+    from sensorfault.events.event import Event
+    from sensorfault.events.export import write_events
     from sensorfault.faults.fault import Fault
     from sensorfault.faults.inject import inject
     from sensorfault.logs import Log, LogError, read, write
     from sensorfault.methods.catalog import METHODS
     from sensorfault.methods.fit import fit
-    from sensorfault.model import Model
-    from sensorfault.monitor.monitor import Monitor
+    from sensorfault.report.page import write_page
+    from sensorfault.runtime.detect import Live, detect
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.result import Detection
+    from sensorfault.runtime.store import load, save
     from sensorfault.simulation.road import drive
-    from sensorfault.store import load, save
-    from sensorfault.types import FAULT, OK, UNKNOWN, VERDICTS
 
 # JAX and the readers are slow to import: each name brings its module along when it is first asked for.
 _HOME = {
-    "FAULT": "types",
-    "OK": "types",
-    "UNKNOWN": "types",
-    "VERDICTS": "types",
-    "Detection": "detection",
-    "Event": "events",
+    "FAULT": "core.types",
+    "OK": "core.types",
+    "UNKNOWN": "core.types",
+    "VERDICTS": "core.types",
+    "Detection": "runtime.result",
+    "Event": "events.event",
     "Fault": "faults.fault",
-    "Live": "detector",
+    "Live": "runtime.detect",
     "Log": "logs",
     "LogError": "logs",
     "METHODS": "methods.catalog",
-    "Model": "model",
-    "Monitor": "monitor.monitor",
+    "Model": "runtime.model",
+    "Monitor": "core.monitor",
     "campaign": "evaluation.campaign",
-    "detect": "detector",
+    "detect": "runtime.detect",
     "drive": "simulation.road",
     "fit": "methods.fit",
     "inject": "faults.inject",
     "judge": "evaluation.judge",
-    "load": "store",
+    "load": "runtime.store",
     "read": "logs",
-    "save": "store",
+    "save": "runtime.store",
     "write": "logs",
-    "write_events": "export",
-    "write_page": "evaluation.page",
+    "write_events": "events.export",
+    "write_page": "report.page",
 }
 
 __all__ = [

@@ -76,7 +76,7 @@ def fitted_model(recorded: bytes, tmp_path_factory: pytest.TempPathFactory) -> b
     """A model of the first 60 s of the drive."""
     from sensorfault.logs import read
     from sensorfault.methods.fit import fit
-    from sensorfault.store import save
+    from sensorfault.runtime.store import save
 
     folder = tmp_path_factory.mktemp("fitted")
     (folder / "drive.csv").write_bytes(recorded)

@@ -9,9 +9,9 @@ import pytest
 
 from cli.conftest import Run
 from sensorfault.logs import LogError
-from sensorfault.studies import catalog
-from sensorfault.studies.catalog import Study
-from sensorfault.studies.findings import Effort, Figure, Findings, Row
+from sensorfault_studies import catalog
+from sensorfault_studies.catalog import Study
+from sensorfault_studies.findings import Effort, Figure, Findings, Row
 
 SHORT = Row("X1", "a drive", "injected", "", "good", "short", 2.0, "auc", 0.912, 0.021, 3, 0.99)
 

@@ -10,7 +10,7 @@ import fitted
 from sensorfault.evaluation import campaign as module
 from sensorfault.evaluation.campaign import MAGNITUDES, Campaign, campaign
 from sensorfault.logs.table import LogError
-from sensorfault.model import MISSED
+from sensorfault.runtime.model import MISSED
 
 KINDS = ("short", "bias", "jam", "miss")
 

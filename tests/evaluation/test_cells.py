@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evaluation.told import detection, event, quiet
+from evaluation.detections import detection, event, quiet
 from sensorfault.evaluation.cells import tabulate
 from sensorfault.evaluation.judge import GRACE_S, Outcome, judge
 from sensorfault.faults.fault import Fault

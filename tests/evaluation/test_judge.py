@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evaluation.told import TICK_S, detection, event, quiet
+from evaluation.detections import TICK_S, detection, event, quiet
 from sensorfault.evaluation.judge import GRACE_S, Outcome, covered_s, judge, noticed_s
 from sensorfault.faults.fault import Fault
 

@@ -7,8 +7,8 @@ from typing import Any
 import jax
 import numpy as np
 
-from sensorfault.monitor.monitor import Monitor, MonitorState
-from sensorfault.types import Sample
+from sensorfault.core.monitor import Monitor, MonitorState
+from sensorfault.core.types import Sample
 
 
 def limits_learned(state: MonitorState) -> Any:

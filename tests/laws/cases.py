@@ -14,36 +14,26 @@ import flown
 from laws.case import Case, limits_learned
 from laws.guests.zoo import zoo
 from laws.rides import navigating
+from sensorfault.core.monitor import Monitor
 from sensorfault.logs.table import Channel, Log, Sensor
-from sensorfault.methods import (
-    ar_predictor,
-    bp_autoencoder,
-    cusum,
-    kinematic_observer,
-    lstm_displacement,
-    lstm_predictor,
-    mean_pair,
-    mlp_predictor,
-    multistep_observer,
-    online_network,
-    ramp_glr,
-    slope,
-)
+from sensorfault.methods.arm import online_network
+from sensorfault.methods.arm.online_network import NAME as NETWORK
+from sensorfault.methods.arm.online_network import Setting
 from sensorfault.methods.catalog import METHODS
-from sensorfault.methods.drifting import drift
-from sensorfault.methods.online_network import NAME as NETWORK
-from sensorfault.methods.online_network import Setting
-from sensorfault.methods.predicted import READMIT_S, REBUILD_S
-from sensorfault.monitor.monitor import Monitor
-from sensorfault.monitor.residual.conditioning import Conditioning
-from sensorfault.monitor.residual.reconstruction import Reconstruction
-from sensorfault.monitor.statistic.exchange import Exchange
-from sensorfault.run import samples
+from sensorfault.methods.height import cusum, kinematic_observer, mean_pair, multistep_observer, ramp_glr, slope
+from sensorfault.methods.height.drifting import drift
+from sensorfault.methods.inertial import bp_autoencoder
+from sensorfault.methods.position import ar_predictor, lstm_displacement, lstm_predictor, mlp_predictor
+from sensorfault.methods.position.predicted import READMIT_S, REBUILD_S
+from sensorfault.runtime.runners import samples
 from sensorfault.simulation.acoustic import Ranging
 from sensorfault.simulation.arm import PERIOD_S, run
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault.simulation.road import drive
 from sensorfault.simulation.underwater import sail
+from sensorfault.stages.residual.conditioning import Conditioning
+from sensorfault.stages.residual.reconstruction import Reconstruction
+from sensorfault.stages.statistic.exchange import Exchange
 from sensorfault.training.gradient import Plan
 from sensorfault.training.multistep import Schedule
 from sensorfault.training.online import Learning

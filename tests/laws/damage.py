@@ -4,7 +4,7 @@ import jax
 import numpy as np
 
 from laws.case import Case
-from sensorfault.types import Sample
+from sensorfault.core.types import Sample
 
 
 def put(array, where, what) -> np.ndarray:

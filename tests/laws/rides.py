@@ -8,9 +8,9 @@ import numpy as np
 from laws.case import Case
 from sensorfault.logs.epochs import Framing, framing
 from sensorfault.logs.table import Log
-from sensorfault.methods import lof_efd, train
-from sensorfault.methods.navigating import Filter, healthy, monitor, navigation
-from sensorfault.run import samples
+from sensorfault.methods.gnss import lof_efd, rail
+from sensorfault.methods.gnss.gnss_ins import Filter, healthy, monitor, navigation
+from sensorfault.runtime.runners import samples
 from sensorfault.simulation import pseudorange
 from sensorfault.simulation.ride import recorded
 from sensorfault.simulation.train import ride
@@ -45,10 +45,10 @@ def navigating(name: str) -> Case:
     """
     learned, unseen = _ride(1), _ride(2)
     how = learned.framing
-    residual = navigation(how, Filter(bank=name == train.NAME))
+    residual = navigation(how, Filter(bank=name == rail.NAME))
     innovations = healthy(how, learned.epochs, residual).normalised
-    if name == train.NAME:
-        branch = train.branch(how, train.means(how, innovations), 8.0)
+    if name == rail.NAME:
+        branch = rail.branch(how, rail.means(how, innovations), 8.0)
     else:
         known, factors = lof_efd.history(innovations, 0)
         branch = lof_efd.branch(how, known, 3 * float(factors.max()))

@@ -13,10 +13,10 @@ from laws.cases import NAMES, names_with
 from laws.compilations import compilations
 from laws.damage import absent, alone, half, holed, lied, silenced, telling, troubled
 from laws.walk import Walk, assert_close, assert_same, finite, walk
-from sensorfault.monitor.monitor import SUBJECTS, Monitor
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import Now, Stepper, fleet
-from sensorfault.types import FAULT, OK, UNKNOWN, Report, Sample
+from sensorfault.core.monitor import SUBJECTS, Monitor
+from sensorfault.core.types import FAULT, OK, UNKNOWN, Report, Sample
+from sensorfault.runtime.runners import Now, Stepper, fleet
+from sensorfault.stages.threshold.fixed import Fixed
 
 
 def on(*names: str) -> pytest.MarkDecorator:

@@ -7,8 +7,8 @@ import jax
 import numpy as np
 from jax import lax
 
-from sensorfault.monitor.monitor import Monitor, MonitorState
-from sensorfault.types import Report, Sample
+from sensorfault.core.monitor import Monitor, MonitorState
+from sensorfault.core.types import Report, Sample
 
 
 class Walk(NamedTuple):

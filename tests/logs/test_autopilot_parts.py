@@ -11,13 +11,13 @@ import pytest
 import fitted
 from logs import written_ardupilot, written_dataflash, written_rig, written_ulog
 from logs.small_parts import small_parts
-from sensorfault.detector import detect
 from sensorfault.logs import Log, LogError, VehicleFile, guess, read
 from sensorfault.logs.parts import read_parts
 from sensorfault.logs.readers import dataflash_pieces
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Tables
-from sensorfault.long_log import detect_long
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.streaming import detect_long
 
 CONTENT = {
     ".ulg": written_ulog.flight(20.0),

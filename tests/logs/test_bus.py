@@ -11,7 +11,7 @@ from asammdf import MDF, Signal
 from logs import written_bus
 from sensorfault.logs import Log, LogError, guess, read
 from sensorfault.logs.readers import mdf_load
-from sensorfault.logs.readers.apart import load_apart
+from sensorfault.logs.readers.subprocess_reader import load_apart
 
 
 def column(log: Log, path: str) -> np.ndarray:

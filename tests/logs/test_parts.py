@@ -14,8 +14,8 @@ from sensorfault.logs import Log, LogError, guess, read, write
 from sensorfault.logs.parts import is_long_log, read_parts
 from sensorfault.logs.read import GUESSED
 from sensorfault.logs.readers import beginning, can_bus, csv, mdf, mdf_load, parquet, topics
-from sensorfault.logs.readers.apart import Loaded
 from sensorfault.logs.readers.formats import read_tables
+from sensorfault.logs.readers.subprocess_reader import Loaded
 
 
 @pytest.fixture(autouse=True)

@@ -7,7 +7,7 @@ import pytest
 
 from sensorfault.logs import VehicleFile, guess, read
 from sensorfault.logs.table import Log
-from sensorfault.studies.multistep.flights import flight
+from sensorfault_studies.multistep.flights import flight
 
 pytestmark = pytest.mark.real
 

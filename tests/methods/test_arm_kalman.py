@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
+from sensorfault.core.types import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import LogError
-from sensorfault.methods.arm_kalman import arm_kalman
-from sensorfault.model import Model
-from sensorfault.replay import replay_log
+from sensorfault.methods.arm.arm_kalman import arm_kalman
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
+from sensorfault.runtime.store import load, save
 from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL, run
-from sensorfault.store import load, save
-from sensorfault.types import FAULT
 
 
 @cache

@@ -6,15 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
+from sensorfault.calibration.gumbel import gumbel_limit
+from sensorfault.calibration.whiteness import whiten
 from sensorfault.faults.motion import Felt, MotionFault, move
 from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
-from sensorfault.methods.bicycle_kalman import bicycle_kalman
-from sensorfault.model import Model
+from sensorfault.methods.position.bicycle_kalman import bicycle_kalman
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 from sensorfault.simulation.road import drive
-from sensorfault.training.gumbel import gumbel_limit
-from sensorfault.training.whiteness import whiten
 
 FELT = Felt((6, 7), (9, 10), True, (3, 4, 5), (0, 1, 2))
 

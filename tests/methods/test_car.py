@@ -6,13 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.detection import Detection
-from sensorfault.detector import detect
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import recipe
-from sensorfault.model import Model
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.result import Detection
 from sensorfault.simulation.road import drive
 from sensorfault.training.session import Session
 

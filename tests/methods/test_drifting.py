@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
+from sensorfault.core.types import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods import cusum, mean_pair, ramp_glr, slope
 from sensorfault.methods.catalog import METHODS
-from sensorfault.methods.drifting import drift
-from sensorfault.model import Model
+from sensorfault.methods.height import cusum, mean_pair, ramp_glr, slope
+from sensorfault.methods.height.drifting import drift
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.store import load, save
 from sensorfault.simulation.flapping_wing import fly
-from sensorfault.store import load, save
 from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT
 
 RECIPES = (slope, mean_pair, ramp_glr, cusum)
 ONSET_S = 600.0

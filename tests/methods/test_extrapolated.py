@@ -6,16 +6,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
+from sensorfault.calibration.open_loop import deaf
+from sensorfault.core.types import FAULT, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import LogError
-from sensorfault.methods.extrapolated import from_last
-from sensorfault.model import Model
-from sensorfault.replay import replay_log
+from sensorfault.methods.position.extrapolated import from_last
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
 from sensorfault.simulation.arm import run
-from sensorfault.training.tapes import deaf
-from sensorfault.types import FAULT, UNKNOWN
 
 NAMES = ("persistence", "linear-extrapolation")
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import fitted
-from sensorfault.detector import detect
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import DEFAULT, METHODS
+from sensorfault.methods.common.watch import watchable
 from sensorfault.methods.fit import fit
-from sensorfault.methods.watch import watchable
-from sensorfault.model import Model
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 
 WITHOUT_CHANCE = "pca", "linear-conditioning", "relative-conditioning"
 ON_THE_RIG = ("elm-autoencoder", "elm-cross-validated", "elm-robust", *WITHOUT_CHANCE)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import missions
-from sensorfault.detector import detect
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import METHODS
-from sensorfault.methods.ranged import Filter, cubature, fitted, followed
-from sensorfault.model import Model
+from sensorfault.methods.ranging.range_filter import Filter, cubature, fitted, followed
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 from sensorfault.simulation.underwater import sail
 from sensorfault.training.ranges import Lesson, spoiled, submerged, surfaced
 from sensorfault.training.session import SILENT

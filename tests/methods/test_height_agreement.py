@@ -9,25 +9,25 @@ import numpy as np
 import pytest
 
 import flown
-from sensorfault.detector import detect
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.guess.vehicle import guess
 from sensorfault.logs.read import read
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
-from sensorfault.methods.height_agreement import build
-from sensorfault.model import Model, hold_s, owners
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.statistic.whitened import Whitened
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.replay import replay_log
-from sensorfault.studies.multistep.flights import FLIGHTS, flight
+from sensorfault.methods.height.height_agreement import build
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.runtime.replay import replay_log
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.statistic.whitened import Whitened
+from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.height_kalman import fit_height_kalman
 from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT, OK, UNKNOWN
 from sensorfault.vehicles.fixed_wing import roles
+from sensorfault_studies.multistep.flights import FLIGHTS, flight
 
 pytestmark = pytest.mark.usefixtures("hasty")
 

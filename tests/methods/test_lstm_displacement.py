@@ -6,15 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
+from sensorfault.calibration.open_loop import deaf
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods import lstm_displacement
-from sensorfault.model import Model
-from sensorfault.replay import replay_log
+from sensorfault.methods.position import lstm_displacement
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
 from sensorfault.simulation.road import drive
 from sensorfault.training.gradient import Plan
 from sensorfault.training.session import SILENT
-from sensorfault.training.tapes import deaf
 
 SIZE = lstm_displacement.Size((4,), Plan(epochs=5, batch=128, rate=0.01))
 POSITION = ("gnss.latitude", "gnss.longitude")

@@ -6,15 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.detection import Detection
-from sensorfault.detector import detect
+from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.motion_deficit import motion_deficit
-from sensorfault.model import Model
+from sensorfault.methods.position.motion_deficit import motion_deficit
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.result import Detection
 from sensorfault.simulation.road import drive
-from sensorfault.types import FAULT, OK, UNKNOWN
 from sensorfault.vehicles.car import roles
 
 PATHS = [*(f"{s}.{axis}" for s in ("gyro", "accelerometer") for axis in "xyz")]

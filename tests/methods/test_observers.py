@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 import flown
-from sensorfault.detector import detect
+from sensorfault.core.types import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods import kinematic_observer, multistep_observer
-from sensorfault.model import Model
-from sensorfault.store import load, save
+from sensorfault.methods.height import kinematic_observer, multistep_observer
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.store import load, save
 from sensorfault.training.multistep import Schedule
 from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT
 
 LEARN_S, ONSET_S = 200.0, 240.0
 HURRIED = Schedule(epochs=40, rate=1e-2)

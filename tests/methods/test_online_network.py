@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from laws.cases import two_joints
-from sensorfault.detector import detect
+from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.online_network import Setting, build
-from sensorfault.model import Model
+from sensorfault.methods.arm.online_network import Setting, build
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 from sensorfault.training.gradient import Plan
 from sensorfault.training.online import Learning, noise, steps
 from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT, OK, UNKNOWN
 
 RATES, ANGLES = ("tachometer1.rate", "tachometer2.rate"), ("encoder1.angle", "encoder2.angle")
 LEARNING = Learning(plan=Plan(epochs=20, rate=1e-2))

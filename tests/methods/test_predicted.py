@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from sensorfault.detector import detect
+from sensorfault.calibration.open_loop import deaf
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods import ar_predictor, linear_extrapolation, lstm_predictor, persistence
-from sensorfault.methods.predicted import GAP
-from sensorfault.model import Model
-from sensorfault.monitor.residual.prediction import Prediction
-from sensorfault.replay import replay_log
+from sensorfault.methods.position import ar_predictor, linear_extrapolation, lstm_predictor, persistence
+from sensorfault.methods.position.predicted import GAP
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
 from sensorfault.simulation.road import drive
+from sensorfault.stages.residual.prediction import Prediction
 from sensorfault.training.gradient import Plan
 from sensorfault.training.session import SILENT
-from sensorfault.training.tapes import deaf
 
 LENGTH = 8
 SEEN = ("gnss.latitude", "gnss.longitude", *(f"{s}.{a}" for s in ("gyro", "accelerometer") for a in "xyz"))

@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
 from sensorfault.faults.motion import Felt, MotionFault, move
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import recipe
-from sensorfault.model import Model
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 from sensorfault.simulation.road import drive
 from sensorfault.training.mounting import fit_mounting
 from sensorfault.training.session import Session

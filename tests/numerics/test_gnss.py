@@ -1,6 +1,6 @@
 """Satellites against the equations of motion, integrated by SciPy in a frame that does not turn; published figures."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax
 import jax.numpy as jnp

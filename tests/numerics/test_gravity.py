@@ -1,6 +1,6 @@
 """Gravity against Somigliana's closed form, which knows nothing of harmonics, and NumPy's against JAX's."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax
 import numpy as np

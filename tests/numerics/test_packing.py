@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import lax
 
-import sensorfault._jax  # noqa: F401
+import sensorfault.core._jax  # noqa: F401
 from sensorfault.numerics.packing import pack, unpack
 
 

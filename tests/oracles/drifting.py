@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from sensorfault.types import Residual
+from sensorfault.core.types import Residual
 
 SIGMA = np.array([0.5, 2.0])
 

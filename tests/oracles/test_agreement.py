@@ -7,10 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.monitor.residual.two_heights import TwoHeights
-from sensorfault.monitor.statistic.agreement import Agreement, named
-from sensorfault.run import samples
-from sensorfault.types import Trust
+from sensorfault.core.types import Trust
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.residual.two_heights import TwoHeights
+from sensorfault.stages.statistic.agreement import Agreement, named
 
 HEIGHT, BARO, DOWN = range(3)
 PAIRS = ((0, 1), (0, 2), (1, 2))

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from laws.walk import walk
-from sensorfault.methods.arm_kalman import arm_kalman
-from sensorfault.run import samples
+from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.methods.arm.arm_kalman import arm_kalman
+from sensorfault.runtime.runners import samples
 from sensorfault.simulation.arm import AS_PRINTED, PERIOD_S, run
-from sensorfault.types import FAULT, OK, UNKNOWN
 
 A1, A2, A3, A4, A5 = AS_PRINTED.constants
 

@@ -8,10 +8,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.monitor.residual.bicycle_kalman import BicycleKalman, Columns
+from sensorfault.core.types import Trust
 from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
-from sensorfault.run import samples
-from sensorfault.types import Trust
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.residual.bicycle_kalman import BicycleKalman, Columns
 
 HZ, EVERY = 50.0, 5
 LATE = 0.1, 0.25

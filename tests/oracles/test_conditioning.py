@@ -6,15 +6,15 @@ import pytest
 
 from laws.guests.zoo import log
 from laws.walk import walk
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.conditioning import Conditioning
-from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
-from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import Residual
 from sensorfault.numerics.gaussian import precision
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.conditioning import Conditioning
+from sensorfault.stages.statistic.mahalanobis import Mahalanobis
+from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.conditioning import fit_conditioning, unbroken
-from sensorfault.types import Residual
 
 CHANNELS, LAGS, TICK = 4, 3, 0.02
 EACH = np.ones(CHANNELS, bool)

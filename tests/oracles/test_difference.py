@@ -7,14 +7,14 @@ import pytest
 
 from laws.strict import strict
 from laws.walk import Walk, walk
+from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Channel, Log, Sensor
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.difference import Difference
-from sensorfault.monitor.statistic.absolute import Absolute
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import samples
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.difference import Difference
+from sensorfault.stages.statistic.absolute import Absolute
+from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.difference import fit_difference
 
 __all__ = ["strict"]

@@ -9,14 +9,14 @@ from scipy import stats
 
 from laws.strict import strict
 from oracles.drifting import SIGMA, Log, scores
-from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
-from sensorfault.monitor.statistic.cusum import Cusum
-from sensorfault.monitor.statistic.ewma import Ewma
-from sensorfault.monitor.statistic.mean_pair import MeanPair
-from sensorfault.monitor.statistic.ramp_glr import LEAST, RampGlr
-from sensorfault.monitor.statistic.slope import Slope
-from sensorfault.monitor.statistic.windowed import Measure, Windowed
-from sensorfault.monitor.statistic.windowed_chi_square import WindowedChiSquare
+from sensorfault.stages.statistic.averaged_innovation import AveragedInnovation
+from sensorfault.stages.statistic.cusum import Cusum
+from sensorfault.stages.statistic.ewma import Ewma
+from sensorfault.stages.statistic.mean_pair import MeanPair
+from sensorfault.stages.statistic.ramp_glr import LEAST, RampGlr
+from sensorfault.stages.statistic.slope import Slope
+from sensorfault.stages.statistic.windowed import Measure, Windowed
+from sensorfault.stages.statistic.windowed_chi_square import WindowedChiSquare
 
 __all__ = ["strict"]
 

@@ -6,19 +6,19 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from core.scripted import FromBlock, Said
 from laws.walk import walk
-from monitor.scripted import FromBlock, Said
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.statistic.fuzzy_inference import FuzzyInference
-from sensorfault.monitor.statistic.logistic_regression import LogisticRegression
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import samples
-from sensorfault.store import _decode, _encode
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import FAULT, OK, Residual, Sample
+from sensorfault.runtime.runners import samples
+from sensorfault.runtime.store import _decode, _encode
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.statistic.fuzzy_inference import FuzzyInference
+from sensorfault.stages.statistic.logistic_regression import LogisticRegression
+from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.fuzzy import Setting, fit_anfis
 from sensorfault.training.logistic import fit_logistic
-from sensorfault.types import FAULT, OK, Residual, Sample
 
 CHANNELS, COLUMNS = 3, (0, 2)
 ANY = jnp.full(2, jnp.inf)  # variance of an innovation

@@ -5,16 +5,16 @@ import numpy as np
 import pytest
 
 from laws.walk import walk
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.height_kalman import HeightKalman
-from sensorfault.monitor.residual.multistep_observer import Bank
-from sensorfault.monitor.statistic.absolute import Absolute
-from sensorfault.monitor.threshold.adaptive import Adaptive
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import samples
-from sensorfault.types import OK, Residual, Score, Trust
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import OK, Residual, Score, Trust
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.height_kalman import HeightKalman
+from sensorfault.stages.residual.multistep_observer import Bank
+from sensorfault.stages.statistic.absolute import Absolute
+from sensorfault.stages.threshold.adaptive import Adaptive
+from sensorfault.stages.threshold.fixed import Fixed
 
 G = 9.80665
 R, Q = np.array([0.04, 0.09, 0.25]), np.array([0.3, 0.01, 1e-4])

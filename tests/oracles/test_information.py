@@ -9,17 +9,17 @@ import pytest
 from scipy import stats
 
 from laws.strict import strict
-from sensorfault.monitor.statistic.averaged_freed import AveragedFreed
-from sensorfault.monitor.statistic.averaged_innovation import AveragedInnovation
-from sensorfault.monitor.statistic.averaged_together import AveragedTogether
-from sensorfault.monitor.statistic.freed import Freed
-from sensorfault.monitor.statistic.mahalanobis import Mahalanobis
-from sensorfault.monitor.statistic.standardised import Standardised
-from sensorfault.monitor.statistic.windowed import Windowed
-from sensorfault.monitor.threshold.chi_square import ChiSquare
+from sensorfault.calibration.chi_square import chi_square
+from sensorfault.core.types import Residual, Score
 from sensorfault.numerics.blocks import enough
-from sensorfault.training.chi_square import chi_square
-from sensorfault.types import Residual, Score
+from sensorfault.stages.statistic.averaged_baarda_w import AveragedFreed
+from sensorfault.stages.statistic.averaged_innovation import AveragedInnovation
+from sensorfault.stages.statistic.averaged_together import AveragedTogether
+from sensorfault.stages.statistic.baarda_w import Freed
+from sensorfault.stages.statistic.mahalanobis import Mahalanobis
+from sensorfault.stages.statistic.standardised import Standardised
+from sensorfault.stages.statistic.windowed import Windowed
+from sensorfault.stages.threshold.chi_square import ChiSquare
 
 __all__ = ["strict"]
 

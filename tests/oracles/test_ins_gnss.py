@@ -11,18 +11,18 @@ import pytest
 
 from laws.walk import Walk, walk
 from oracles.navigator import L1, LIGHT, SIGN, Navigator, State, ahead, derivative, expected, growth
+from sensorfault.core.types import Sample
 from sensorfault.logs.epochs import framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.navigating import ASIDE_M_S, SIGMA, WHEEL_M_S, Filter, monitor, navigation
-from sensorfault.monitor.residual.ins_belief import Belief
-from sensorfault.monitor.residual.ins_gnss import InsGnss
+from sensorfault.methods.gnss.gnss_ins import ASIDE_M_S, SIGMA, WHEEL_M_S, Filter, monitor, navigation
 from sensorfault.numerics.alignment import ALIGNED, forward
 from sensorfault.numerics.ins_error import transition
 from sensorfault.numerics.strapdown import Rows, advance
-from sensorfault.run import samples
+from sensorfault.runtime.runners import samples
 from sensorfault.simulation.ride import Ride
 from sensorfault.simulation.train import ride
-from sensorfault.types import Sample
+from sensorfault.stages.residual.ins_belief import Belief
+from sensorfault.stages.residual.ins_gnss import InsGnss
 
 HZ, STRETCH = 10, 6  # rows of the first of two stretches: half of the slots for a row, which are one second's and two
 DENSITY = np.repeat([1e-3, 0.1, 0.0, 1e-5, 1e-4, 0.1, 0.19], [3, 3, 3, 3, 3, 1, 1]) ** 2

@@ -7,16 +7,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.motion_deficit import MotionDeficit
-from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
-from sensorfault.monitor.statistic.norm import Norm
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import replay, samples
+from sensorfault.runtime.runners import replay, samples
 from sensorfault.simulation.road import drive
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.motion_deficit import MotionDeficit
+from sensorfault.stages.residual.velocity_deficit import VelocityDeficit
+from sensorfault.stages.statistic.norm import Norm
+from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.vehicles.inertial import Inertial
 
 PATHS = ["gnss.latitude", "gnss.longitude", "gnss.speed", "gnss.course"]

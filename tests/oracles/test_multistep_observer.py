@@ -10,10 +10,10 @@ import pytest
 
 import flown
 from laws.walk import walk
-from sensorfault.methods import kinematic_observer
-from sensorfault.run import samples
+from sensorfault.core.types import FAULT, OK, UNKNOWN, Trust
+from sensorfault.methods.height import kinematic_observer
+from sensorfault.runtime.runners import samples
 from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT, OK, UNKNOWN, Trust
 from sensorfault.vehicles.height import Climb, StepNetwork
 
 STEPS = (1, 5, 12)

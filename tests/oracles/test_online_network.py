@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 
 from laws.walk import Walk, walk
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.rebuild import Rebuild
-from sensorfault.monitor.residual.online_network import OnlineNetwork
-from sensorfault.monitor.statistic.absolute import Absolute
-from sensorfault.monitor.threshold.sigma import Sigma
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import FAULT, OK, UNKNOWN, Sample
 from sensorfault.numerics.networks.dense import Dense, Mlp
-from sensorfault.run import samples
-from sensorfault.types import FAULT, OK, UNKNOWN, Sample
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.residual.online_network import OnlineNetwork
+from sensorfault.stages.statistic.absolute import Absolute
+from sensorfault.stages.threshold.sigma import Sigma
 
 TICK_S, ROWS, HIDDEN, HORIZON = 0.01, 160, 4, 12
 M, N = 2, 1  # y(k), y(k-1); u(k+1), u(k)

@@ -9,12 +9,12 @@ from sklearn.neighbors import LocalOutlierFactor
 from laws.strict import strict
 from oracles.drifting import SIGMA, Log, scores
 from sensorfault.logs.table import LogError
-from sensorfault.monitor.statistic.cumulative_bank import CumulativeBank
-from sensorfault.monitor.statistic.means import Means
-from sensorfault.monitor.statistic.outlier_factor import OutlierFactor
-from sensorfault.monitor.statistic.windowed_outlier_factor import WindowedOutlierFactor
 from sensorfault.numerics.blocks import enough
 from sensorfault.numerics.outlier_factor import LocalDensity
+from sensorfault.stages.statistic.cumulative_bank import CumulativeBank
+from sensorfault.stages.statistic.means import Means
+from sensorfault.stages.statistic.outlier_factor import OutlierFactor
+from sensorfault.stages.statistic.windowed_outlier_factor import WindowedOutlierFactor
 from sensorfault.training.outlier_factor import fit_history
 
 __all__ = ["strict"]

@@ -10,18 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from core.scripted import FromBlock, Said
 from laws.walk import Walk, walk
-from monitor.scripted import FromBlock, Said
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.decision.persist import Persist
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.rebuild import Rebuild
-from sensorfault.monitor.statistic.norm import Norm
-from sensorfault.monitor.statistic.repeats import Repeats
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.monitor.threshold.scaled_max import ScaledMax
-from sensorfault.run import samples
-from sensorfault.types import FAULT, OK, UNKNOWN, Residual, Score
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import FAULT, OK, UNKNOWN, Residual, Score
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.decision.persist import Persist
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.statistic.norm import Norm
+from sensorfault.stages.statistic.repeats import Repeats
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.stages.threshold.scaled_max import ScaledMax
 
 LONG, CHANNELS = 60, 3
 SCALE = np.array([0.5, 1.0, 2.0])

@@ -7,13 +7,13 @@ from scipy.special import expit
 
 from laws.guests.zoo import log
 from laws.walk import walk
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.reconstruction import Reconstruction
-from sensorfault.monitor.statistic.exchange import Exchange
-from sensorfault.monitor.statistic.norm import Norm
-from sensorfault.monitor.threshold.fixed import Fixed
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.reconstruction import Reconstruction
+from sensorfault.stages.statistic.exchange import Exchange
+from sensorfault.stages.statistic.norm import Norm
+from sensorfault.stages.threshold.fixed import Fixed
 
 CHANNELS, HIDDEN = 4, 7
 ACTIVATIONS = {"identity": lambda x: x, "sigmoid": expit, "tanh": np.tanh, "relu": lambda x: np.maximum(x, 0)}

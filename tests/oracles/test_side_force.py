@@ -4,14 +4,14 @@ import jax.numpy as jnp
 import numpy as np
 
 from laws.walk import walk
-from sensorfault.model import MOTION
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.residual.side_force import SideForce
-from sensorfault.monitor.statistic.lasting import Lasting
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import samples
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.runtime.model import MOTION
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.side_force import SideForce
+from sensorfault.stages.statistic.lasting import Lasting
+from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.vehicles.inertial import SideOn
 
 ROWS, TICK, T, STALE = 400, 0.02, 0.3, 0.5

@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
-from sensorfault.events import Event
+from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs import read
 from sensorfault.logs.table import Log
 from sensorfault.methods.catalog import recipe
-from sensorfault.model import MISSED, Model
-from sensorfault.studies.min2021 import bias_miss as study
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import MISSED, Model
 from sensorfault.training.session import Session
 from sensorfault.vehicles.car import moving, roles
+from sensorfault_studies.min2021 import bias_miss as study
 
 pytestmark = pytest.mark.real
 

@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 
 from sensorfault.logs import LogError
-from sensorfault.studies import commit as commits
-from sensorfault.studies.catalog import STUDIES
-from sensorfault.studies.commit import commit
-from sensorfault.studies.data import real
-from sensorfault.studies.findings import SOURCES, Effort, Figure, Findings, Row
-from sensorfault.studies.min2021 import study as min2021
-from sensorfault.studies.page import page
-from sensorfault.studies.tables import PAPER, Cell, ours, printed, tables, thinned
+from sensorfault_studies import commit as commits
+from sensorfault_studies.catalog import STUDIES
+from sensorfault_studies.commit import commit
+from sensorfault_studies.data import real
+from sensorfault_studies.findings import SOURCES, Effort, Figure, Findings, Row
+from sensorfault_studies.min2021 import study as min2021
+from sensorfault_studies.page import page
+from sensorfault_studies.tables import PAPER, Cell, ours, printed, tables, thinned
 
 ONE = Row("A1", "dresden", "injected", "L32", "pca", "short", 1.0, "auc", 0.8412, 0.0123, 5, 0.9)
 
@@ -244,7 +244,7 @@ def test_the_commit_is_the_checkouts(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_the_commit_is_a_hash() -> None:
-    home = Path(commits.__file__).parents[3]
+    home = Path(commits.__file__).parents[2]
     if not (home / ".git").exists():
         pytest.skip("needs a checkout")
     assert re.fullmatch(r"[0-9a-f]{40}(-dirty)?", commit())

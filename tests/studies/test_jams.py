@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
+from sensorfault.core.types import FAULT
 from sensorfault.methods.catalog import METHODS
-from sensorfault.model import Model
-from sensorfault.studies.min2021.jam_scores import at_random, at_rate, counted, flag_all, said
-from sensorfault.studies.min2021.jamming import LEARN, RECOVERY_S, Drive, jammed
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
-from sensorfault.types import FAULT
+from sensorfault_studies.min2021.jam_scores import at_random, at_rate, counted, flag_all, said
+from sensorfault_studies.min2021.jamming import LEARN, RECOVERY_S, Drive, jammed
 
 FOLDERS = {"dresden_50hz": "road/dresden_50hz", "drive0708": "road/gnss_imu_drive0708"}
 LEAST = {"dresden_50hz": {1.0: 0.95, 5.0: 0.97, 20.0: 0.97}, "drive0708": {1.0: 0.99, 5.0: 0.99, 20.0: 0.99}}

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 import flown
-from sensorfault.methods.observed import Heights
-from sensorfault.replay import replay_log
-from sensorfault.studies.findings import Effort
-from sensorfault.studies.multistep import drift as study
-from sensorfault.studies.multistep.contenders import KINEMATIC, NETWORK, Contender, kinematic, network, watch
-from sensorfault.studies.multistep.drift import LOUD, drifts
-from sensorfault.studies.multistep.figures import of_drift
-from sensorfault.studies.multistep.flights import flight
-from sensorfault.studies.multistep.flown import Flown, Ramps, count
-from sensorfault.studies.multistep.study import rows_of
+from sensorfault.methods.height.height_observer import Heights
+from sensorfault.runtime.replay import replay_log
 from sensorfault.training.multistep import Trained
+from sensorfault_studies.findings import Effort
+from sensorfault_studies.multistep import drift as study
+from sensorfault_studies.multistep.contenders import KINEMATIC, NETWORK, Contender, kinematic, network, watch
+from sensorfault_studies.multistep.drift import LOUD, drifts
+from sensorfault_studies.multistep.figures import of_drift
+from sensorfault_studies.multistep.flights import flight
+from sensorfault_studies.multistep.flown import Flown, Ramps, count
+from sensorfault_studies.multistep.study import rows_of
 
 pytestmark = pytest.mark.usefixtures("hasty")
 

@@ -9,17 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.logs.table import LogError
 from sensorfault.methods.catalog import METHODS
-from sensorfault.model import Model
-from sensorfault.replay import replay_log
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
 from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL, run
-from sensorfault.studies.findings import Effort
-from sensorfault.studies.niu1998 import drifts as study
-from sensorfault.studies.niu1998.drifts import drifts, smallest
-from sensorfault.studies.niu1998.figures import of_slow_drifts, of_the_run
-from sensorfault.studies.niu1998.fleet import BATCH, Told, watch, with_limits
-from sensorfault.studies.niu1998.isolation import (
+from sensorfault.training.session import SILENT
+from sensorfault_studies.findings import Effort
+from sensorfault_studies.niu1998 import drifts as study
+from sensorfault_studies.niu1998.drifts import drifts, smallest
+from sensorfault_studies.niu1998.figures import of_slow_drifts, of_the_run
+from sensorfault_studies.niu1998.fleet import BATCH, Told, watch, with_limits
+from sensorfault_studies.niu1998.isolation import (
     LASTING,
     ONSET,
     SENSORS,
@@ -31,13 +33,11 @@ from sensorfault.studies.niu1998.isolation import (
     stretches,
     trials,
 )
-from sensorfault.studies.niu1998.joints import APART
-from sensorfault.studies.niu1998.rivals import KALMAN, NETWORK, SCRATCH, Rival, of_six_joints, of_two_links
-from sensorfault.studies.niu1998.run import Watched, early, first, found_soon, increment_error, joined, theta
-from sensorfault.studies.niu1998.schunk import runs
-from sensorfault.studies.numbers import Numbers
-from sensorfault.training.session import SILENT
-from sensorfault.types import FAULT, OK, UNKNOWN
+from sensorfault_studies.niu1998.joints import APART
+from sensorfault_studies.niu1998.rivals import KALMAN, NETWORK, SCRATCH, Rival, of_six_joints, of_two_links
+from sensorfault_studies.niu1998.run import Watched, early, first, found_soon, increment_error, joined, theta
+from sensorfault_studies.niu1998.schunk import runs
+from sensorfault_studies.numbers import Numbers
 
 
 @cache
@@ -189,7 +189,7 @@ def test_bad_archives_are_refused_in_a_sentence(tmp_path: Path) -> None:
 def swinging() -> tuple:
     """Runs of six joints that swing smoothly."""
     time = 0.004 * np.arange(400)
-    from sensorfault.studies.niu1998 import schunk
+    from sensorfault_studies.niu1998 import schunk
 
     logs = []
     for i in range(8):

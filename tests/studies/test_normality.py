@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sensorfault.studies.findings import Row
-from sensorfault.studies.min2021 import normality as study
-from sensorfault.studies.min2021.normality_faults import biases, motions
-from sensorfault.studies.min2021.normality_sizes import jarque_bera, made, sizes, windows
+from sensorfault_studies.findings import Row
+from sensorfault_studies.min2021 import normality as study
+from sensorfault_studies.min2021.normality_faults import biases, motions
+from sensorfault_studies.min2021.normality_sizes import jarque_bera, made, sizes, windows
 
 
 def number(rows: list[Row], **wanted: object) -> float:

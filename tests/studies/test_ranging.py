@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from sensorfault.logs.table import LogError
-from sensorfault.methods.ranged import Filter, cubature, followed
-from sensorfault.studies.numbers import Numbers
-from sensorfault.studies.xu2023 import receivers, robots, rovers, walks
-from sensorfault.studies.xu2023.gates import ALL, FITTED, Watched, compared, early, watching
-from sensorfault.studies.xu2023.receivers import Dive, impossible
-from sensorfault.studies.xu2023.run import through
-from sensorfault.studies.xu2023.scenario import Scenario
+from sensorfault.methods.ranging.range_filter import Filter, cubature, followed
+from sensorfault_studies.numbers import Numbers
+from sensorfault_studies.xu2023 import receivers, robots, rovers, walks
+from sensorfault_studies.xu2023.gates import ALL, FITTED, Watched, compared, early, watching
+from sensorfault_studies.xu2023.receivers import Dive, impossible
+from sensorfault_studies.xu2023.run import through
+from sensorfault_studies.xu2023.scenario import Scenario
 
 ROWS = 2560  # compiled for
 

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from sklearn.metrics import roc_auc_score
 
-from sensorfault.methods.reconstructed import reconstructed
+from sensorfault.calibration.open_loop import deaf
+from sensorfault.methods.inertial.reconstructed import reconstructed
 from sensorfault.simulation.road import drive
-from sensorfault.studies.findings import Effort, Findings
-from sensorfault.studies.min2021 import shorts as study
-from sensorfault.studies.min2021.copiers import Candidate, candidates
-from sensorfault.studies.min2021.judged import Judged, agreement, judge, over
-from sensorfault.studies.min2021.roc import curve, detected, folds
-from sensorfault.studies.min2021.spikes import EVERY, Drive, judged_rows, spiked
 from sensorfault.training.elm import fit_elm
-from sensorfault.training.tapes import deaf
+from sensorfault_studies.findings import Effort, Findings
+from sensorfault_studies.min2021 import shorts as study
+from sensorfault_studies.min2021.copiers import Candidate, candidates
+from sensorfault_studies.min2021.judged import Judged, agreement, judge, over
+from sensorfault_studies.min2021.roc import curve, detected, folds
+from sensorfault_studies.min2021.spikes import EVERY, Drive, judged_rows, spiked
 
 
 @cache

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.detector import detect
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Channel, Log, Sensor
-from sensorfault.methods import drift_setting, drifting, ramp_glr, slope
+from sensorfault.methods.height import drift_setting, drifting, ramp_glr, slope
+from sensorfault.runtime.detect import detect
 from sensorfault.simulation.flapping_wing import fly
-from sensorfault.studies.multistep.beats import Beats, compared
-from sensorfault.studies.multistep.flights import flight
-from sensorfault.studies.multistep.slow_judge import HALF, RATES, Told, judge
+from sensorfault_studies.multistep.beats import Beats, compared
+from sensorfault_studies.multistep.flights import flight
+from sensorfault_studies.multistep.slow_judge import HALF, RATES, Told, judge
 
 SHORT = replace(slope.TEST, setting=drift_setting.Setting(window_s=30.0))  # for logs that are short
 MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from sensorfault.logs.table import Channel, Log, Sensor
-from sensorfault.monitor.residual.difference import Difference
-from sensorfault.studies.multistep.beats import Beats
-from sensorfault.studies.multistep.slow import SHORT, Slow, _add
-from sensorfault.studies.multistep.slow_figures import figures
-from sensorfault.studies.multistep.slow_judge import HALF, MATCHED, RATES, Judged
-from sensorfault.studies.multistep.slow_page import remarks
-from sensorfault.studies.numbers import Numbers
+from sensorfault.stages.residual.difference import Difference
+from sensorfault_studies.multistep.beats import Beats
+from sensorfault_studies.multistep.slow import SHORT, Slow, _add
+from sensorfault_studies.multistep.slow_figures import figures
+from sensorfault_studies.multistep.slow_judge import HALF, MATCHED, RATES, Judged
+from sensorfault_studies.multistep.slow_page import remarks
+from sensorfault_studies.numbers import Numbers
 
 TIME = np.arange(100.0)
 ONSETS = np.array([60.0, 70.0])

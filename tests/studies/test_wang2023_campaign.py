@@ -6,16 +6,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.methods.navigating import Filter, navigation
-from sensorfault.methods.navigating import monitor as watching
-from sensorfault.monitor.monitor import Branch
-from sensorfault.monitor.statistic.normalised import Normalised
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.studies.wang2023.campaign import SETTLED, Flown, case, false_alarms, flown
-from sensorfault.studies.wang2023.contenders import unwatched
-from sensorfault.studies.wang2023.drive import pseudoranges
-from sensorfault.studies.wang2023.matching import limited, matched
-from sensorfault.studies.wang2023.trials import LASTS, ONSETS, Lie, outcome, trials
+from sensorfault.core.monitor import Branch
+from sensorfault.methods.gnss.gnss_ins import Filter, navigation
+from sensorfault.methods.gnss.gnss_ins import monitor as watching
+from sensorfault.stages.statistic.normalised import Normalised
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault_studies.wang2023.campaign import SETTLED, Flown, case, false_alarms, flown
+from sensorfault_studies.wang2023.contenders import unwatched
+from sensorfault_studies.wang2023.drive import pseudoranges
+from sensorfault_studies.wang2023.matching import limited, matched
+from sensorfault_studies.wang2023.trials import LASTS, ONSETS, Lie, outcome, trials
 
 
 def test_every_satellite_lies_from_every_onset() -> None:

@@ -9,7 +9,7 @@ from oracles.strapdown import navigate
 from sensorfault.numerics.geodesy import ecef_to_geodetic, enu_axes
 from sensorfault.simulation import pseudorange
 from sensorfault.simulation.ride import Ride
-from sensorfault.studies.wang2023.drive import drive, pseudoranges
+from sensorfault_studies.wang2023.drive import drive, pseudoranges
 
 pytestmark = pytest.mark.real
 

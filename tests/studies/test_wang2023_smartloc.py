@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sensorfault.evaluation.ranking import auc
-from sensorfault.studies.wang2023.navigated import horizontal
-from sensorfault.studies.wang2023.nlos import WAYS, _known_place, scores, through
-from sensorfault.studies.wang2023.smartloc import Town, town
+from sensorfault_studies.wang2023.navigated import horizontal
+from sensorfault_studies.wang2023.nlos import WAYS, _known_place, scores, through
+from sensorfault_studies.wang2023.smartloc import Town, town
 
 LATE, NONE = (
     next(way for way in WAYS if way.condition == "carrier" and way.method == m) for m in ("late", "no-exclusion")

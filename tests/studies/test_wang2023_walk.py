@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.studies.wang2023.navigated import Navigated
-from sensorfault.studies.wang2023.walk import LASTS_S, ONSETS_S, _alarms, _found, walk
+from sensorfault_studies.wang2023.navigated import Navigated
+from sensorfault_studies.wang2023.walk import LASTS_S, ONSETS_S, _alarms, _found, walk
 
 
 def test_refusals_are_counted_by_whose_they_are() -> None:

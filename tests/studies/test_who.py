@@ -3,9 +3,9 @@
 import numpy as np
 
 import flown
-from sensorfault.replay import replay_log
-from sensorfault.studies.multistep.who import LASTS_S, Ramp, gate, judged
-from sensorfault.types import FAULT
+from sensorfault.core.types import FAULT
+from sensorfault.runtime.replay import replay_log
+from sensorfault_studies.multistep.who import LASTS_S, Ramp, gate, judged
 
 
 def test_ramps_are_on_what_they_say() -> None:

@@ -5,13 +5,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.methods.chi_square_cubature import chi_square
-from sensorfault.methods.cooperative import cooperative
-from sensorfault.methods.ranged import Filter
-from sensorfault.studies.xu2023 import real_auv
-from sensorfault.studies.xu2023.contenders import early, eased
-from sensorfault.studies.xu2023.run import lockout_s, scores, table, through
-from sensorfault.studies.xu2023.scenario import PRINTED, TRAINED_S, scenario
+from sensorfault.methods.ranging.chi_square_cubature import chi_square
+from sensorfault.methods.ranging.cooperative import cooperative
+from sensorfault.methods.ranging.range_filter import Filter
+from sensorfault_studies.xu2023 import real_auv
+from sensorfault_studies.xu2023.contenders import early, eased
+from sensorfault_studies.xu2023.run import lockout_s, scores, table, through
+from sensorfault_studies.xu2023.scenario import PRINTED, TRAINED_S, scenario
 
 pytestmark = pytest.mark.usefixtures("hasty")
 

@@ -7,11 +7,11 @@ import plotly.graph_objects as go
 import pytest
 
 from sensorfault.evaluation.plain import plain
-from sensorfault.studies.numbers import Numbers
-from sensorfault.studies.xu2023 import learning_figures as figures
-from sensorfault.studies.xu2023.learners import ANFIS, LOGISTIC, SETTINGS, compared, curves, judged
 from sensorfault.training.fuzzy import Fitted, Setting, fit_anfis
 from sensorfault.training.labelled import Labelled
+from sensorfault_studies.numbers import Numbers
+from sensorfault_studies.xu2023 import learning_figures as figures
+from sensorfault_studies.xu2023.learners import ANFIS, LOGISTIC, SETTINGS, compared, curves, judged
 
 WRONG_M = 9.0
 
@@ -39,7 +39,7 @@ def test_what_is_counted() -> None:
 
 
 def test_every_way_to_learn_finds_what_is_plain_to_see(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sensorfault.studies.xu2023.learners.SETTINGS", {
+    monkeypatch.setattr("sensorfault_studies.xu2023.learners.SETTINGS", {
         name: Setting(**{**vars(one), "epochs": 2}) for name, one in SETTINGS.items()
     })  # fmt: skip
     numbers = Numbers("E", "simulated", "simulated")

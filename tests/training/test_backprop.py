@@ -6,9 +6,9 @@ import jax
 import numpy as np
 from scipy.special import expit
 
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.training.backprop import PLAN, fit_backprop, untrained
 from sensorfault.training.elm import fit_elm
-from sensorfault.training.scaling import Scaling
 
 SHORT = replace(PLAN, epochs=150, rate=0.01)
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.training.cross_validation import largest_unseen_norm
 from sensorfault.training.elm import fit_elm
 from sensorfault.training.pca import fit_pca
-from sensorfault.training.scaling import Scaling
 
 
 def rows(seed: int = 1, length: int = 403) -> np.ndarray:

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import expit
 
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.training.elm import fit_elm, ridge
-from sensorfault.training.scaling import Scaling
 
 
 def printed(hidden: np.ndarray, target: np.ndarray, c: float) -> np.ndarray:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from sklearn.decomposition import PCA
 
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.training.pca import fit_pca
-from sensorfault.training.scaling import Scaling
 
 
 @pytest.mark.parametrize(("channels", "components"), [(6, 3), (6, 1), (4, 3), (3, 3), (2, 3)])

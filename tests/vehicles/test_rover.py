@@ -4,8 +4,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from sensorfault.run import samples
-from sensorfault.types import Sample
+from sensorfault.core.types import Sample
+from sensorfault.runtime.runners import samples
 from sensorfault.vehicles.rover import UNKNOWN_SPEED, UNKNOWN_TURN, Rover
 
 LANDMARKS = np.array([[4.0, 1.0], [-2.0, 5.0], [0.5, -3.0]])

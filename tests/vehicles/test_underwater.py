@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import missions
+from sensorfault.core.types import Sample
 from sensorfault.logs.table import Channel, Sensor
 from sensorfault.numerics.geodesy import geodetic_to_ecef
-from sensorfault.run import samples
-from sensorfault.types import Sample
+from sensorfault.runtime.runners import samples
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, Leader, roles
 
 

@@ -23,14 +23,14 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     """
     from sensorfault.cli.scenarios import DRIVE, FLIGHT
     from sensorfault.evaluation.judge import judge
-    from sensorfault.evaluation.page import write_page
     from sensorfault.faults.inject import inject
     from sensorfault.faults.plan import plan
     from sensorfault.faults.text import truth_to_json
     from sensorfault.logs import write
     from sensorfault.methods.catalog import recipe
     from sensorfault.methods.fit import fit
-    from sensorfault.store import save
+    from sensorfault.report.page import write_page
+    from sensorfault.runtime.store import save
 
     scenario = FLIGHT if flight else DRIVE
     if context.get_parameter_source("method") == ParameterSource.DEFAULT:

@@ -9,7 +9,7 @@ import click
 from sensorfault.cli import long, options, show, work
 
 if TYPE_CHECKING:
-    from sensorfault.events import Event
+    from sensorfault.events.event import Event
     from sensorfault.logs import Log
 
 
@@ -48,7 +48,7 @@ def command(
     Without --model the method is fitted on the log's own beginning, which is then taken as healthy; of a long log
     that is read part by part, on no more than four million numbers.
     """
-    from sensorfault.export import check
+    from sensorfault.events.export import check
 
     for out in outs:
         check(out)
@@ -63,7 +63,7 @@ def command(
     found = work.detect(ready.model, ready.judged)
     _write(found.events, found.log, log, outs, json_path)
     if report_path is not None:
-        from sensorfault.evaluation.page import write_page
+        from sensorfault.report.page import write_page
 
         write_page(found, report_path, summary=ready.sentences)
         show.say(f"Wrote {report_path}.")
@@ -72,7 +72,7 @@ def command(
 
 def _write(events: "Sequence[Event]", table: "Log", log: Path, outs: Sequence[Path], json_path: str | None) -> None:
     """The events as a table, and to the files asked for."""
-    from sensorfault.export import write_events
+    from sensorfault.events.export import write_events
 
     show.events(events, f"Faults in {table.name}", answer=json_path != "-")
     for out in outs:

@@ -35,7 +35,7 @@ def command(
     """Fit a method on a healthy log and measure its false alarms on the part held out."""
     from sensorfault.methods.catalog import recipe
     from sensorfault.methods.fit import fit
-    from sensorfault.store import save
+    from sensorfault.runtime.store import save
 
     recipe(method)
     work.check_outputs([out, json_path, checkpoint], [log, vehicle])

@@ -17,7 +17,7 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
 
     Every line is a guess from names and values and says why it was made.
     """
-    from sensorfault.files import appearing
+    from sensorfault.core.files import appearing
     from sensorfault.logs import LogError, guess
 
     with show.reading(log.name) as tell:

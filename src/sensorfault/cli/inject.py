@@ -26,9 +26,9 @@ def command(
     log: Path, vehicle: Path | None, faults: tuple[str, ...], out: Path | None, seed: int, json_path: str | None
 ) -> None:
     """Put faults into a log. Writes the log, its vehicle.toml and the truth beside it."""
+    from sensorfault.core.files import appearing
     from sensorfault.faults.inject import inject
     from sensorfault.faults.text import parse_fault, truth_to_json
-    from sensorfault.files import appearing
     from sensorfault.logs import LogError, write
 
     if out is None:

@@ -8,13 +8,13 @@ from sensorfault.cli import show, work
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sensorfault.detection import Detection
     from sensorfault.faults.fault import Fault
     from sensorfault.logs import Log
     from sensorfault.logs.joining import Said
     from sensorfault.logs.summary import Summing
-    from sensorfault.long_log import LongDetection
-    from sensorfault.model import Model
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.result import Detection
+    from sensorfault.runtime.streaming import LongDetection
 
 
 class Wanted(NamedTuple):
@@ -54,11 +54,11 @@ def detect(
     truth: "Sequence[Fault]" = (),
 ) -> "LongDetection":
     """Read and judge part by part, say what reading found, and draw the `report`."""
-    from sensorfault.evaluation.page import write_sketch
-    from sensorfault.evaluation.page_sketch import Sketch
-    from sensorfault.long_log import detect_long
     from sensorfault.methods.fit import fit
-    from sensorfault.store import load
+    from sensorfault.report.page import write_sketch
+    from sensorfault.report.page_sketch import Sketch
+    from sensorfault.runtime.store import load
+    from sensorfault.runtime.streaming import detect_long
 
     work.check_learn(wanted.learn)
     sketches = list[Sketch]()

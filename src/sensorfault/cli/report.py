@@ -36,7 +36,7 @@ def command(
 
     One file, interactive, opens offline.
     """
-    from sensorfault.evaluation.page import write_page
+    from sensorfault.report.page import write_page
 
     work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
     truth = work.read_truth(truth_path) if truth_path else ()

@@ -9,9 +9,9 @@ import click
 from sensorfault.cli import options, show, work
 
 if TYPE_CHECKING:
-    from sensorfault.studies.catalog import Study
-    from sensorfault.studies.findings import Findings
-    from sensorfault.studies.tables import Cell
+    from sensorfault_studies.catalog import Study
+    from sensorfault_studies.findings import Findings
+    from sensorfault_studies.tables import Cell
 
 ALL = "all"
 
@@ -27,7 +27,7 @@ def command(name: str, seeds: int, quick: bool, out: Path | None, json_path: str
 
     STUDY is min2021, niu1998, multistep, or all. Its real logs are found through SENSORFAULT_DATA.
     """
-    from sensorfault.studies.commit import commit
+    from sensorfault_studies.commit import commit
 
     studies = _studies(name)
     _check_folder(out)
@@ -45,7 +45,7 @@ def command(name: str, seeds: int, quick: bool, out: Path | None, json_path: str
 
 def _studies(name: str) -> "list[Study]":
     from sensorfault.logs import LogError
-    from sensorfault.studies.catalog import STUDIES
+    from sensorfault_studies.catalog import STUDIES
 
     if name != ALL and name not in STUDIES:
         raise LogError(f"{name}: there is no such study; this version has {', '.join(STUDIES)}, and {ALL} for all.")
@@ -64,7 +64,7 @@ def _check_folder(out: Path | None) -> None:
 
 
 def _run(study: "Study", seeds: int, quick: bool) -> "Findings":
-    from sensorfault.studies.findings import Effort
+    from sensorfault_studies.findings import Effort
 
     with show.progress() as bar:
         task = bar.add_task(study.name, total=1.0)
@@ -75,8 +75,8 @@ def _run(study: "Study", seeds: int, quick: bool) -> "Findings":
 
 
 def _print(study: "Study", findings: "Findings", answer: bool) -> None:
-    from sensorfault.studies.page import titled
-    from sensorfault.studies.tables import grouped, tables, thinned
+    from sensorfault_studies.page import titled
+    from sensorfault_studies.tables import grouped, tables, thinned
 
     for code, rows in grouped(findings.rows, lambda row: row.experiment):
         for table in tables(rows):
@@ -93,8 +93,8 @@ def _text(cell: "Cell") -> str:
 
 
 def _write(study: "Study", findings: "Findings", out: Path, facts: str, answer: dict[str, Any]) -> None:
-    from sensorfault.files import appearing
-    from sensorfault.studies.page import page
+    from sensorfault.core.files import appearing
+    from sensorfault_studies.page import page
 
     text = page(study, findings, facts)
     out.mkdir(parents=True, exist_ok=True)

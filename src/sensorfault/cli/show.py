@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-    from sensorfault.events import Event
+    from sensorfault.events.event import Event
     from sensorfault.faults.fault import Fault
 
 
@@ -152,7 +152,7 @@ def write_json(path: str | None, answer: Mapping[str, Any]) -> None:
     if path == "-":
         sys.stdout.write(text)
         return
-    from sensorfault.files import appearing
+    from sensorfault.core.files import appearing
 
     with appearing(Path(path)) as temporary:
         temporary.write_text(text)

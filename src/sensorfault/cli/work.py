@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 from sensorfault.cli import show
 
 if TYPE_CHECKING:
-    from sensorfault.detection import Detection
-    from sensorfault.events import Event
+    from sensorfault.events.event import Event
     from sensorfault.faults.fault import Fault
     from sensorfault.logs import Log
-    from sensorfault.model import Model
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.result import Detection
 
 WATCHED_SAID = 24
 SUSPECTS_SAID = 10
@@ -110,7 +110,7 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
     """Load the model; without one, fit on the log's own beginning and judge the rest."""
     check_learn(learn)
     if model_path is not None:
-        from sensorfault.store import load
+        from sensorfault.runtime.store import load
 
         model = load(model_path)
         return Ready(model, log, None, limits(model))
@@ -202,7 +202,7 @@ def not_watched(model: "Model") -> tuple[str, ...]:
 
 def detect(model: "Model", log: "Log", what: str = "judging") -> "Detection":
     """Detect with a progress bar."""
-    from sensorfault.detector import detect
+    from sensorfault.runtime.detect import detect
 
     with show.progress() as bar:
         task = bar.add_task(what, total=1.0)

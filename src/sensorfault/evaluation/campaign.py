@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sensorfault.detector import detect
 from sensorfault.evaluation.cells import Cell, tabulate
 from sensorfault.evaluation.judge import Judgement, Outcome, judge
 from sensorfault.evaluation.ranking import auc, auc_pr
@@ -13,7 +12,8 @@ from sensorfault.faults.fault import OFFSETS, Fault
 from sensorfault.faults.inject import inject
 from sensorfault.faults.plan import plan
 from sensorfault.logs.table import Log, LogError
-from sensorfault.model import MISSED, Model
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import MISSED, Model
 
 PAUSE_S = 5.0  # between two faults
 MAGNITUDES = {  # of the faults a campaign injects: sigmas, sigmas a second, factor, seconds

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sensorfault.detection import Detection
 from sensorfault.evaluation.judge import GRACE_S, Outcome, covered_s
 from sensorfault.faults.fault import KINDS
+from sensorfault.runtime.result import Detection
 
 
 @dataclass(frozen=True)

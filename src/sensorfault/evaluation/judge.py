@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sensorfault.detection import Detection
-from sensorfault.events import Event
+from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
-from sensorfault.model import TOGETHER
 from sensorfault.numerics.poisson import rate_below
+from sensorfault.runtime.model import TOGETHER
+from sensorfault.runtime.result import Detection
 
 GRACE_S = 1.0  # an event that begins so soon after a fault's end is still that fault's
 

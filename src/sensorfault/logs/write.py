@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 from jaxtyping import Bool
 
-from sensorfault.files import appearing
+from sensorfault.core.files import appearing
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows
 from sensorfault.logs.place import VEHICLE

@@ -1,42 +1,44 @@
 """Name -> recipe."""
 
 from sensorfault.logs.table import LogError
-from sensorfault.methods import (
-    anfis_cubature,
-    ar_predictor,
-    arm_kalman,
-    bicycle_kalman,
-    bp_autoencoder,
-    car,
-    chi_square_cubature,
-    cooperative,
+from sensorfault.methods.arm import arm_kalman, online_network
+from sensorfault.methods.composite import car, drone
+from sensorfault.methods.gnss import innovation_tests, lof_efd, rail
+from sensorfault.methods.height import (
     cusum,
-    double_threshold,
-    drone,
+    height_agreement,
+    kinematic_observer,
+    mean_pair,
+    multistep_observer,
+    ramp_glr,
+    slope,
+)
+from sensorfault.methods.inertial import (
+    bp_autoencoder,
     elm_autoencoder,
     elm_cross_validated,
     elm_robust,
-    height_agreement,
-    innovation_tests,
-    kinematic_observer,
     linear_conditioning,
+    pca,
+    relative_conditioning,
+)
+from sensorfault.methods.position import (
+    ar_predictor,
+    bicycle_kalman,
     linear_extrapolation,
-    lof_efd,
-    logistic_cubature,
     lstm_displacement,
     lstm_predictor,
-    mean_pair,
     mlp_predictor,
     motion_deficit,
-    multistep_observer,
-    online_network,
-    pca,
     persistence,
-    ramp_glr,
-    relative_conditioning,
     side_force,
-    slope,
-    train,
+)
+from sensorfault.methods.ranging import (
+    anfis_cubature,
+    chi_square_cubature,
+    cooperative,
+    double_threshold,
+    logistic_cubature,
 )
 from sensorfault.methods.recipe import Recipe
 
@@ -75,7 +77,7 @@ _RECIPES = (
     cooperative.RECIPE,
     *innovation_tests.RECIPES,
     lof_efd.RECIPE,
-    train.RECIPE,
+    rail.RECIPE,
 )
 METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
 DEFAULT = relative_conditioning.RECIPE.name

@@ -4,13 +4,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from sensorfault.detector import detect
+from sensorfault.calibration.data_screening import leave_out
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import DEFAULT, recipe
-from sensorfault.model import Model
 from sensorfault.numerics.poisson import rate_below
+from sensorfault.runtime.detect import detect
+from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
-from sensorfault.training.suspects import leave_out
 
 HELD_OUT = 0.3
 

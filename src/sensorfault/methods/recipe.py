@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.model import Model
+from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
 
 

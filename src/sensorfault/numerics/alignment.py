@@ -1,6 +1,6 @@
 """From nothing to a navigating filter: a position from one epoch, a velocity from several, the attitude from motion."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float

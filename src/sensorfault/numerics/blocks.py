@@ -1,6 +1,6 @@
 """A window of blocks for each of C channels: K slots, the newest last; values that lie close together share a slot."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from math import ceil
 from typing import NamedTuple

@@ -1,6 +1,6 @@
 """Some channels out of all, and rows that move up: without a gather, which costs more in a small loop."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 from jaxtyping import Array

@@ -4,7 +4,7 @@ Source: I. Arasaratnam & S. Haykin, Cubature Kalman filters, IEEE TAC 54(6), 200
 from the mean, so a spread of centimetres survives a state in radians.
 """
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,6 +1,6 @@
 """Fuzzy inference: how far each rule applies, and what all of them say together. NumPy or JAX, as the features are."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Callable
 from typing import Any

@@ -1,6 +1,6 @@
 """What an innovation has to say of its measurement."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import Any
 

@@ -5,7 +5,7 @@ too much (3 each, body axes), clock offset [m] and drift [m/s]; behind them one 
 of satellites. METHODS.md C; Groves (2013), section 14.2.3.
 """
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import NamedTuple
 

@@ -1,6 +1,6 @@
 """Covariances of an extended Kalman filter inside a compiled step: few states, sums instead of LAPACK."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 from jax import lax

@@ -4,7 +4,7 @@ The middle-latitude formula, good to a millimetre over 10 km below 60 degrees. A
 taken; within FARTHEST of a pole east means nothing and there is no answer.
 """
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 import numpy as np

@@ -1,6 +1,6 @@
 """Logistic regression of a few features."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import Any
 

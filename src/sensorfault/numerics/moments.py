@@ -1,6 +1,6 @@
 """Central moments up to the fourth, kept so that nothing cancels (Pébay 2008): of one more value, of blocks."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import NamedTuple
 

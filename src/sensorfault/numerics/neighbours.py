@@ -1,6 +1,6 @@
 """The k nearest of a set of points, inside a compiled step."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 import numpy as np

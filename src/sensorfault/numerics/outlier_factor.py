@@ -1,6 +1,6 @@
 """Local outlier factor of new points against a history that stays as it is."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import Any
 

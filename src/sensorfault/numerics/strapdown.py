@@ -4,7 +4,7 @@ Source: P. D. Groves, Principles of GNSS, Inertial, and Multisensor Integrated N
 section 5.3.
 """
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import NamedTuple
 

@@ -1,6 +1,6 @@
 """A trail of places with the way gone since each: K slots, the newest first, masks instead of indices."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import NamedTuple
 

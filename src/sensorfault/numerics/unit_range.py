@@ -1,6 +1,6 @@
 """Features as shares of the range that training has shown."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import Any
 

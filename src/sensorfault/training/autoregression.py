@@ -1,6 +1,6 @@
 """The linear predictor: least squares, at once."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 import numpy as np

@@ -1,6 +1,6 @@
 """The extreme learning machine's network, all of its weights trained: what backpropagation makes of the same rows."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Callable
 
@@ -8,11 +8,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.numerics.networks.dense import Dense, Mlp
+from sensorfault.stages.residual.reconstruction import Reconstruction
 from sensorfault.training.gradient import Plan, Trained, train
 from sensorfault.training.initial import new_mlp
-from sensorfault.training.scaling import Scaling
 from sensorfault.training.session import SILENT, Session
 from sensorfault.training.windows import Windows
 

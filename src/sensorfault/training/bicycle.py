@@ -1,6 +1,6 @@
 """Noise, lags and mounting of the bicycle-model Kalman filter, from a healthy drive."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Callable
 
@@ -10,11 +10,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.core.types import Sample, Trust
 from sensorfault.logs.table import Log, LogError
-from sensorfault.monitor.residual.bicycle_kalman import Belief, BicycleKalman, Columns
-from sensorfault.run import samples
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.residual.bicycle_kalman import Belief, BicycleKalman, Columns
 from sensorfault.training.mounting import fit_mounting
-from sensorfault.types import Sample, Trust
 from sensorfault.vehicles.car import Roles, moving
 
 MOST_ROWS = 8000  # of the drive, from where it moves first, that the noise is fitted to

@@ -11,7 +11,7 @@ import numpy as np
 from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save_file
 
-from sensorfault.files import appearing
+from sensorfault.core.files import appearing
 from sensorfault.logs.table import LogError
 
 FORMAT = "sensorfault checkpoint 1"

@@ -2,13 +2,13 @@
 
 from itertools import pairwise
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.monitor.residual.conditioning import Conditioning
+from sensorfault.stages.residual.conditioning import Conditioning
 
 LAGS = 4
 BOUND = 3.0  # conditional sigmas; of 2, 3, 4 the one at which neither real drive loses

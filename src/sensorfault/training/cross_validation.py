@@ -1,15 +1,15 @@
 """How a reconstruction errs on healthy rows that it was not fitted on."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Callable
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.monitor.residual.reconstruction import Reconstruction
+from sensorfault.calibration.scaling import Scaling
 from sensorfault.numerics.networks.activations import ACTIVATIONS
-from sensorfault.training.scaling import Scaling
+from sensorfault.stages.residual.reconstruction import Reconstruction
 
 BLOCKS = 5
 

@@ -7,10 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from sensorfault.core.monitor import Monitor
+from sensorfault.core.types import Report, Sample
 from sensorfault.logs.table import Log
-from sensorfault.monitor.monitor import Monitor
-from sensorfault.run import replay, samples
-from sensorfault.types import Report, Sample
+from sensorfault.runtime.runners import replay, samples
 
 HEAVY = 4.0  # degrees of freedom of the law that innovations are taken to follow: wild ones hardly count
 NARROW = 0.8310  # its scale, fitted to Gaussian numbers, over theirs: E (ν + 1) z² / (ν + z²) = 1 for z = N(0, 1) / s

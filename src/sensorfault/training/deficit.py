@@ -1,6 +1,6 @@
 """What the deficits of position and velocity are on a healthy drive."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from itertools import combinations
 
@@ -9,10 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from sensorfault.calibration.open_loop import extra_tape
 from sensorfault.logs.table import Log
-from sensorfault.monitor.residual.motion_deficit import MotionDeficit
-from sensorfault.monitor.residual.velocity_deficit import VelocityDeficit
-from sensorfault.training.tapes import extra_tape
+from sensorfault.stages.residual.motion_deficit import MotionDeficit
+from sensorfault.stages.residual.velocity_deficit import VelocityDeficit
 
 TIMES = (1.0, 2.0, 4.0, 8.0)  # ages of references over which a law is learned, in horizons
 SLOTS = 32  # of the trail while learning

@@ -5,9 +5,9 @@ from dataclasses import replace
 import jax.numpy as jnp
 import numpy as np
 
+from sensorfault.calibration.open_loop import extra_tape
 from sensorfault.logs.table import Log, LogError
-from sensorfault.monitor.residual.difference import Difference
-from sensorfault.training.tapes import extra_tape
+from sensorfault.stages.residual.difference import Difference
 
 APART = 10  # beats: what wanders over minutes is no lag
 LONGEST_S = 3.0  # no barometer and no receiver is later

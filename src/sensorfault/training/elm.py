@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.monitor.residual.reconstruction import Reconstruction
-from sensorfault.training.scaling import Scaling
+from sensorfault.calibration.scaling import Scaling
+from sensorfault.stages.residual.reconstruction import Reconstruction
 
 BLOCK = 1024  # rows that stay in the processor's cache from one step to the next: the fit takes a third of the time
 

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.model import MISSED, hold_s
+from sensorfault.runtime.model import MISSED, hold_s
 
 LEAST_FIXES = 50
 GAP_S = 2.0  # over so long a roll-out goes on, whatever the rate of the heights

@@ -1,6 +1,6 @@
 """ANFIS: fuzzy rules that foretell the error of a measurement, learned from measurements whose error is known."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from dataclasses import dataclass, replace
 from typing import Literal

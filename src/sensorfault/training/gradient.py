@@ -4,7 +4,7 @@ An epoch is one compiled scan. What the chances are in an epoch follows from the
 training that goes on from a checkpoint ends where it would have ended without the break, to the bit.
 """
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 """Noise of the height's Kalman filter, from a healthy log."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from dataclasses import replace
 from typing import Any
@@ -11,12 +11,12 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from sensorfault.core.types import Sample, Trust
 from sensorfault.logs.table import Log
-from sensorfault.monitor.residual.height_kalman import HeightKalman
-from sensorfault.run import samples
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.residual.height_kalman import HeightKalman
 from sensorfault.training.fixes import Fixes
 from sensorfault.training.online import noise
-from sensorfault.types import Sample, Trust
 from sensorfault.vehicles.fixed_wing import Roles
 
 LEAST_M, LEAST_MPS = 0.02, 0.02  # no sensor is taken to be better

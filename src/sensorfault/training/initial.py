@@ -1,6 +1,6 @@
 """Networks before training: random weights of the usual size."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 import numpy as np

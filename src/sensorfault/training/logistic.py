@@ -1,6 +1,6 @@
 """Logistic regression: the odds that a measurement is off, learned from measurements of which that is known."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax
 import jax.numpy as jnp

@@ -1,6 +1,6 @@
 """How the inertial unit sits in the car and how late the receiver is, from a healthy drive alone."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from dataclasses import dataclass
 

@@ -1,6 +1,6 @@
 """The network of the multi-step observer: one training for each number of steps, all of them one computation."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Sequence
 from dataclasses import dataclass

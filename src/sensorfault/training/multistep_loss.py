@@ -1,6 +1,6 @@
 """What the training of the observer's networks minimises: the errors of a roll-out, the early steps weighing more."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from typing import NamedTuple
 

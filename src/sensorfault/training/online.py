@@ -1,6 +1,6 @@
 """A network that learns while it watches: how it begins, and what it is taught beforehand in the same way."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -12,15 +12,15 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from sensorfault.core.types import Sample, Trust
 from sensorfault.logs.table import Log
-from sensorfault.monitor.residual.online_network import OnlineNetwork
 from sensorfault.numerics.networks.dense import Mlp
-from sensorfault.run import samples
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.residual.online_network import OnlineNetwork
 from sensorfault.training.gradient import Plan, train
 from sensorfault.training.initial import new_mlp
 from sensorfault.training.session import Session
 from sensorfault.training.windows import Windows
-from sensorfault.types import Sample, Trust
 
 GAP = 1.5  # ticks without a row that break a window
 EXACT = 0.5  # of the noise of an increment: what is foretold so well is not learned from

@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.monitor.residual.reconstruction import Reconstruction
-from sensorfault.training.scaling import Scaling
+from sensorfault.calibration.scaling import Scaling
+from sensorfault.stages.residual.reconstruction import Reconstruction
 
 
 def fit_pca(value: Float[np.ndarray, "N C"], scaling: Scaling, components: int = 3) -> Reconstruction:

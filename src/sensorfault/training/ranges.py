@@ -9,16 +9,16 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.core.monitor import Monitor
+from sensorfault.core.types import Report, Sample
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import from_si
-from sensorfault.monitor.monitor import Monitor
 from sensorfault.numerics.innovation import features
-from sensorfault.replay import Numbers
-from sensorfault.run import replay, samples
+from sensorfault.runtime.replay import Numbers
+from sensorfault.runtime.runners import replay, samples
 from sensorfault.training.labelled import Labelled
-from sensorfault.types import Report, Sample
 from sensorfault.vehicles.underwater import Follower
 
 EVERY_S = 120.0  # one fault on each leader in so long

@@ -1,6 +1,6 @@
 """How far a roll-out of the height errs on a log."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Sequence
 

@@ -1,6 +1,6 @@
 """What fuzzy rules say, in words: sentences for people, and their memberships as a table."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,12 +1,12 @@
 """What side force a healthy car feels when it turns."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 import numpy as np
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.monitor.residual.side_force import SLOWEST, SideForce
+from sensorfault.stages.residual.side_force import SLOWEST, SideForce
 from sensorfault.training.mounting import fit_mounting
 from sensorfault.vehicles.car import Roles
 from sensorfault.vehicles.inertial import SideOn

@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.types import Sample, Trust
+from sensorfault.core.types import Sample, Trust
 
 STANDING = 0.1  # [m/s]
 

@@ -4,8 +4,8 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.core.types import Sample
 from sensorfault.numerics.columns import picked
-from sensorfault.types import Sample
 
 UNKNOWN_SPEED = 0.3  # standard deviation of a forward velocity that nothing measures [m/s]
 UNKNOWN_TURN = 0.6  # and of a turn rate [rad/s]

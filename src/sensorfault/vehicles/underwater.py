@@ -4,12 +4,12 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from sensorfault.core.types import Sample
 from sensorfault.logs.table import Channel, Log
 from sensorfault.logs.units import si_unit
 from sensorfault.numerics.columns import picked
 from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
 from sensorfault.numerics.local import east_north, on_the_map
-from sensorfault.types import Sample
 
 UNKNOWN_SPEED = 2.0  # standard deviation of a velocity that nothing measures [m/s]
 GAP_S = 5.0  # over a longer gap of the clock nobody knows how it went

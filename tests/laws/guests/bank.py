@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from sensorfault.types import NEVER, Residual, Sample, Score, Trust
+from sensorfault.core.types import NEVER, Residual, Sample, Score, Trust
 
 
 class Members(NamedTuple):

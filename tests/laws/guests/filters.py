@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.types import NEVER, Residual, Sample, Trust
+from sensorfault.core.types import NEVER, Residual, Sample, Trust
 
 
 class Belief(NamedTuple):

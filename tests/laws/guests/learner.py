@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.types import Residual, Sample, Trust
+from sensorfault.core.types import Residual, Sample, Trust
 
 
 class Learned(NamedTuple):

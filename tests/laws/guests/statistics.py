@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from sensorfault.types import Residual, Score, Trust
+from sensorfault.core.types import Residual, Score, Trust
 
 
 def one_a_channel(value: Float[Array, " C"], valid) -> Score:

@@ -10,13 +10,13 @@ from laws.guests.bank import Bank, MemberFit
 from laws.guests.filters import ConstantVelocity, Inertial, InertialRows
 from laws.guests.learner import Nlms, RunningSigma
 from laws.guests.statistics import Absolute, Normalized, Outlier, WindowMean
-from sensorfault.monitor.decision.exceed import Exceed
-from sensorfault.monitor.monitor import Branch, Monitor
-from sensorfault.monitor.recovery.drop import Drop
-from sensorfault.monitor.recovery.rebuild import Rebuild
-from sensorfault.monitor.threshold.fixed import Fixed
-from sensorfault.run import samples
-from sensorfault.types import Sample
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.types import Sample
+from sensorfault.runtime.runners import samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.threshold.fixed import Fixed
 
 STEP_S = 0.02
 LONG = 400

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.apart import reason
 from sensorfault.logs.readers.can_rows import Rows
 from sensorfault.logs.readers.extra import extra
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, told
+from sensorfault.logs.readers.subprocess_reader import reason
 from sensorfault.logs.readers.telling import TellingFile, open_telling
 from sensorfault.logs.table import LogError
 

@@ -9,11 +9,11 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.apart import Loaded, load_apart, reason
 from sensorfault.logs.readers.extra import missing
 from sensorfault.logs.readers.mat_load import load
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.subprocess_reader import Loaded, load_apart, reason
 from sensorfault.logs.table import LogError
 
 _HEAD, _TAG = 128, struct.Struct("<II")

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from sensorfault.logs.readers.apart import Loaded, reason
+from sensorfault.logs.readers.subprocess_reader import Loaded, reason
 
 _NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from sensorfault.logs.readers.apart import Loaded
+from sensorfault.logs.readers.subprocess_reader import Loaded
 
 _NUMBERS = "biuf"  # numpy's letters for truths, whole numbers and floats
 

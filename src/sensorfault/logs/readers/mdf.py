@@ -6,11 +6,11 @@ from pathlib import Path
 import polars as pl
 
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.apart import Loaded, load_apart
 from sensorfault.logs.readers.extra import missing
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.mdf_load import TIME
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.subprocess_reader import Loaded, load_apart
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import known, spelled
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from sensorfault.logs.readers.apart import Loaded, reason
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import PART
+from sensorfault.logs.readers.subprocess_reader import Loaded, reason
 
 TIME = "time"
 

@@ -1,6 +1,6 @@
 """Backpropagation of one sample at a time, repeated until its error is small."""
 
-import sensorfault._jax  # isort: skip  # noqa: F401
+import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
 from jax import lax

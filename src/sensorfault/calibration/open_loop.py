@@ -1,0 +1,54 @@
+"""Tapes: what healthy data make of a monitor whose limits are off."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from sensorfault.core.monitor import Branch, Monitor, MonitorState
+from sensorfault.core.stage import Stage
+from sensorfault.core.types import Residual, Sample
+from sensorfault.logs.table import Log
+from sensorfault.runtime.replay import replay_log
+from sensorfault.runtime.runners import replay, samples
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.statistic.norm import Norm
+from sensorfault.stages.threshold.fixed import Fixed
+
+
+def deaf(monitor: Monitor) -> Monitor:
+    """The monitor with all its limits off."""
+    off = [Fixed(jnp.full(shape.shape, jnp.inf)) for shape in jax.eval_shape(_scores, monitor)]
+    made: Monitor = eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, off)
+    return made
+
+
+def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
+    """The scores of an empty sample."""
+    channels = len(monitor.owner)
+    none = jnp.zeros(channels, bool)
+    sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none)
+    return [score.value for score in monitor.step(monitor.init(), sample)[1].scores]
+
+
+def score_tape(deaf: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
+    """The scores of every branch over a log, NaN where a test had nothing to test."""
+    return tuple(np.asarray(score) for score in replay_log(deaf, log).scores)
+
+
+def extra_tape(residual: Stage[Any, Sample, Residual, Any], log: Log) -> Any:
+    """`extra` of a residual generator's every sample on a healthy log, all of it trusted."""
+    channels = len(log.channels)
+    silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
+    monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
+    rows = samples(log.time, log.value, log.fresh)
+    return jax.tree.map(np.asarray, _told(monitor, monitor.init(), rows))
+
+
+@jax.jit
+def _told(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
+    return replay(monitor, state, rows, lambda report: report.residual.extra)[1]

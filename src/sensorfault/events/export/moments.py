@@ -1,0 +1,48 @@
+"""Events as moments: one that begins and one that ends, on the recording's clock."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sensorfault.events.event import Event
+from sensorfault.logs.table import Log
+
+NS = 10**9
+
+
+@dataclass(frozen=True)
+class Moment:
+    """`time_ns`: Unix time where the log knows it, else since its zero. `open`: what lasts then, in order of begin."""
+
+    time_ns: int
+    event: Event
+    begins: bool
+    open: tuple[Event, ...]
+
+
+def moments(events: Sequence[Event], log: Log) -> list[Moment]:
+    """Every begin and end in order of time; at one time ends come first. An event that goes on has no end."""
+    zero = log.epoch_s or 0.0
+    told = [(event.start_s, True, event) for event in events]
+    told += [(event.end_s, False, event) for event in events if event.end_s is not None]
+    last: list[Event] = []
+    found = []
+    for time_s, begins, event in sorted(told, key=lambda one: (one[0], one[1] and one[2].end_s != one[0])):
+        last = [*last, event] if begins else [other for other in last if other is not event]
+        found.append(Moment(round(zero * NS) + round(time_s * NS), event, begins, tuple(last)))
+    return found
+
+
+def door(event: Event) -> str:
+    """At whose door the fault is laid: `gnss.altitude`, `gnss`, `vehicle motion`, or nobody's."""
+    if event.subject == "motion":
+        return "vehicle motion"
+    if event.sensor is None:
+        return "the whole log" if event.kind == "miss" else "unknown which"
+    return f"{event.sensor}.{event.channel}" if event.channel else event.sensor
+
+
+def sentence(event: Event, begins: bool) -> str:
+    """`bias on gnss.altitude begins (score 12.3, limit 8.4, drone)`."""
+    score = f"score {event.peak_score:.3g}, " if event.peak_score is not None else ""
+    limit = f"limit {event.limit:.3g}, " if event.limit is not None else ""
+    return f"{event.kind} on {door(event)} {'begins' if begins else 'ends'} ({score}{limit}{event.method})"

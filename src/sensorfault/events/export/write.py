@@ -1,0 +1,60 @@
+"""Write fault events to a file of the kind that its name says."""
+
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+from sensorfault.core.files import appearing
+from sensorfault.events.event import Event
+from sensorfault.events.export import bags, mcap, tables
+from sensorfault.logs.table import Log, LogError
+
+Writer = Callable[[Sequence[Event], Log, Path, Path | None], None]
+
+KINDS: dict[str, Writer] = {
+    ".jsonl": tables.write_jsonl,
+    ".csv": tables.write_csv,
+    ".parquet": tables.write_parquet,
+    ".mcap": mcap.write_mcap,
+    ".bag": bags.write_bag1,
+    "": bags.write_bag2,
+}
+_WORDS = ".jsonl, .csv, .parquet, .mcap (annotations), .bag (ROS 1) or a new folder (ROS 2 bag)"
+
+
+def check(path: Path) -> None:
+    """Whether events can be written under this name, before the work is done.
+
+    Raises:
+        LogError: another kind of file, one that needs a library that is not there, or a folder that is there already.
+    """
+    kind = path.suffix.lower()
+    if kind not in KINDS:
+        raise LogError(f"{path}: events are written as {_WORDS}, not as '{path.suffix}'; change the name.")
+    if kind == ".mcap" and find_spec("foxglove") is None:
+        raise LogError(f"{path}: annotations need foxglove-sdk; run `pip install 'sensorfault[viewers]'`.")
+    if kind == "" and path.exists():
+        raise LogError(f"{path} is there already; name a new folder for the bag, or a file with one of {_WORDS}.")
+
+
+def write_events(events: Sequence[Event], log: Log, path: str | Path, source: Path | None = None) -> None:
+    """Write events; the file appears whole or not at all.
+
+    Args:
+        events: of one log, in its seconds.
+        log: what they were found in; where it knows Unix time, recordings are stamped with it, else from 0.
+        path: .jsonl, .csv, .parquet; .mcap for annotations; .bag for ROS 1, or a new folder for a ROS 2 bag, of
+            diagnostic_msgs/DiagnosticArray.
+        source: for .mcap: a recording whose messages are copied beside the annotations.
+
+    Raises:
+        LogError: as `check` says, or the folder cannot be written to.
+    """
+    path = Path(path)
+    check(path)
+    writer = KINDS[path.suffix.lower()]
+    if path.suffix:
+        with appearing(path) as temporary:
+            writer(events, log, temporary, source)
+    else:
+        bags.appear(path, lambda folder: writer(events, log, folder, source))

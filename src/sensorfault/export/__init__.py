@@ -1,5 +1,0 @@
-"""Events for other programs: tables, and recordings that the field's viewers open."""
-
-from sensorfault.export.write import KINDS, check, write_events
-
-__all__ = ["KINDS", "check", "write_events"]

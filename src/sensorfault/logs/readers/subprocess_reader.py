@@ -1,0 +1,106 @@
+"""Libraries that damage can make end the interpreter, or fill the memory: they read in a process of their own.
+
+That lives on for the next file, is told on each line of its input, as JSON, where to put what it found and a file, and
+answers with a line: nothing, or why the file cannot be read.
+"""
+
+import atexit
+import json
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from select import select
+from typing import Any
+
+import numpy as np
+
+_LONGEST_S, _BYTES_PER_S = 30.0, 1e7
+_ENDED = "its sizes and types contradict each other"
+_running: dict[str, subprocess.Popen[str]] = {}
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """Vectors by table and name, and what else there is to tell of them, as JSON can say it."""
+
+    vectors: dict[str, dict[str, np.ndarray]]
+    told: dict[str, Any] = field(default_factory=dict)
+
+    def save(self, path: str) -> None:
+        """Put it where `saved` finds it."""
+        names = [(table, name) for table, vectors in self.vectors.items() for name in vectors]
+        arrays: dict[str, Any] = {f"v{i}": self.vectors[table][name] for i, (table, name) in enumerate(names)}
+        np.savez(path, about=np.array(json.dumps([list(self.vectors), names, self.told])), **arrays)
+
+    @classmethod
+    def saved(cls, path: str) -> "Loaded":
+        """What `save` has put there."""
+        with np.load(path, allow_pickle=False) as found:
+            tables, names, told = json.loads(str(found["about"]))
+            vectors: dict[str, dict[str, np.ndarray]] = {table: {} for table in tables}
+            for i, (table, name) in enumerate(names):
+                vectors[table][name] = found[f"v{i}"]
+        return cls(vectors, told)
+
+
+def load_apart(loader: str, path: Path, *more: Any) -> Loaded:
+    """What the `load` of the module of this name finds in a file; `more`: what it is told beside the file, as JSON can.
+
+    Raises:
+        ValueError: why it cannot be read.
+    """
+    with tempfile.TemporaryDirectory(prefix="sensorfault-") as folder:
+        into = str(Path(folder) / "vectors.npz")
+        answer = _asked(loader, [into, str(path.absolute()), *more], _LONGEST_S + path.stat().st_size / _BYTES_PER_S)
+        if answer:
+            raise ValueError(answer)
+        return Loaded.saved(into)
+
+
+def reason(error: BaseException) -> str:
+    """Why a library cannot read a file, on one line."""
+    return (str(error).splitlines() or [""])[0].rstrip(".") or type(error).__name__
+
+
+def _asked(loader: str, question: list[Any], longest_s: float) -> str:
+    """What the other process answers; one that ends or does not answer is replaced."""
+    process = _process(loader)
+    try:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(json.dumps(question) + "\n")
+        process.stdin.flush()
+        ready, _, _ = select([process.stdout], [], [], longest_s)
+        answer = process.stdout.readline() if ready else ""
+    except OSError:
+        answer = ""
+    if not answer:
+        _end(loader)
+        return _ENDED
+    return answer.rstrip("\n")
+
+
+def _process(loader: str) -> subprocess.Popen[str]:
+    running = _running.get(loader)
+    if running is not None and running.poll() is None:
+        return running
+    _end(loader)
+    command = [sys.executable, "-m", "sensorfault.logs.readers.subprocess_serve", loader]
+    pipe, quiet = subprocess.PIPE, subprocess.DEVNULL
+    _running[loader] = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=quiet, text=True)
+    return _running[loader]
+
+
+def _end(loader: str) -> None:
+    process = _running.pop(loader, None)
+    if process is not None:
+        process.kill()
+        process.communicate()
+
+
+@atexit.register
+def _end_all() -> None:
+    for loader in list(_running):
+        _end(loader)

@@ -1,0 +1,120 @@
+"""Do both joints of an arm move as its torques say: a Kalman filter on the paper's arm, each innovation by itself."""
+
+from functools import partial
+from statistics import NormalDist
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.recipe import Recipe
+from sensorfault.numerics.two_link import Constants
+from sensorfault.runtime.model import Model, complete, hold_s, owners
+from sensorfault.runtime.replay import replay_log
+from sensorfault.simulation.arm import AS_PRINTED
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.arm_kalman import ArmKalman
+from sensorfault.stages.statistic.whitened import Whitened
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.online import noise
+from sensorfault.training.session import Session
+from sensorfault.vehicles.arm import Joints, TwoLink, joints
+
+FALSE_ALARMS = 1e-4  # allowed to one sensor at one sample
+FORGETTING = 1e-3  # variance that the state gains from one sample to the next, as a share of the sensor's
+GAP = 5.5  # ticks without anything to take in after which the filter begins anew
+LEAST_ROWS = 20
+ODD = 4.0  # mean square of a sensor's healthy whitened innovations that shows another arm
+
+
+def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: float = FALSE_ALARMS) -> Model:
+    """Fit the noise of the sensors of a two-joint arm on a healthy log; `arm` is known. `far`: of a sensor's sample.
+
+    Raises:
+        LogError: other joints than two, too few rows, or an arm that does not move as `arm` does.
+    """
+    found, watched, rows = _two_joints(name, log)
+    outputs, channels = (*found.rates, *found.angles), len(log.channels)
+    r = noise(log.value[:, outputs]) ** 2
+    limit = NormalDist().inv_cdf(1 - far / 2)
+    monitor = Monitor(
+        residual=ArmKalman(
+            arm=TwoLink.of(arm),
+            q=jnp.asarray(FORGETTING * r / log.period_s),
+            r=jnp.asarray(r),
+            gap_s=jnp.asarray(GAP * log.period_s),
+            outputs=outputs,
+            torques=found.torques,
+            channels=channels,
+        ),
+        branches=(Branch(Whitened(tuple((c,) for c in outputs), channels), Fixed(jnp.full(len(outputs), limit))),),
+        decision=Exceed(),
+        recovery=Drop(),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+    )
+    sigma = _sigma(name, log, monitor, watched)
+    told = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "rows": int(rows.sum()),
+        "arm": arm._asdict(),
+        "not_watched": {c.path: "not measured" for i, c in enumerate(log.channels) if i not in outputs},
+    }
+    tests = tuple(("innovation", log.channels[c].path) for c in outputs)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)
+
+
+def _two_joints(name: str, log: Log) -> tuple[Joints, Bool[np.ndarray, " C"], Bool[np.ndarray, " T"]]:
+    """The joints, the columns watched and the rows that have all of them.
+
+    Raises:
+        LogError: other joints than two, or too few rows.
+    """
+    found = joints(log)
+    for what, columns in (("rate", found.rates), ("angle", found.angles), ("torque", found.torques)):
+        if len(columns) != 2:
+            raise LogError(
+                f"{log.name} has {len(columns)} channels called {what} in SI's unit, {name} needs one for each of two "
+                "joints; name the columns in vehicle.toml, or take another method."
+            )
+    watched = np.isin(np.arange(len(log.channels)), (*found.rates, *found.angles))
+    rows = complete(log, watched)
+    if rows.sum() < LEAST_ROWS:
+        raise LogError(
+            f"{log.name} has {rows.sum()} rows with every rate and angle, {name} needs {LEAST_ROWS}; give more."
+        )
+    return found, watched, rows
+
+
+def _sigma(name: str, log: Log, monitor: Monitor, watched: Bool[np.ndarray, " C"]) -> tuple[float, ...]:
+    """Standard deviation of each channel's innovation, 1 where there is none; the log must be of this arm."""
+    tape = replay_log(monitor, log)
+    score: Float[np.ndarray, "T K"] = np.asarray(tape.scores[0])
+    if not np.isfinite(score).any() or np.nanmean(score**2, axis=0).max() > ODD:
+        raise LogError(
+            f"{log.name} is not of the arm that {name} knows, or not healthy: its innovations are far larger than the "
+            "noise of its sensors; take another method."
+        )
+    residual = np.where(tape.valid, tape.residual, np.nan)[:, watched]
+    sigma = np.ones(len(watched))
+    sigma[watched] = np.sqrt(np.nanmean(residual**2, axis=0))
+    return tuple(sigma.tolist())
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    return arm_kalman(RECIPE.name, log)
+
+
+RECIPE = Recipe(
+    name="arm-kalman",
+    title="Extended Kalman filter on the two-joint arm of Niu & Zhao 1998, innovation of each sensor by itself",
+    source="the analytical redundancy that Niu & Zhao 1998, section 1, set their network against",
+    promise="one false alarm in 10,000 samples of each sensor, if the arm and its noise are what the filter takes them "
+    "for",
+    build=_build,
+    needs=partial(_two_joints, "arm-kalman"),
+)

@@ -1,0 +1,156 @@
+"""What the tests for a slow drift of a height share: the difference to the barometer, its limits, the monitor."""
+
+from dataclasses import replace
+
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.calibration.open_loop import score_tape
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.height.drift_setting import DriftTest, Setting, Statistic
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.residual.difference import Difference
+from sensorfault.stages.statistic.absolute import Absolute
+from sensorfault.stages.statistic.cusum import Cusum
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.difference import fit_difference
+from sensorfault.training.session import Session
+from sensorfault.vehicles.fixed_wing import roles
+
+REBUILD_S = 300.0  # what the barometer says stands in for so long: its offset wanders over minutes
+LEAST_WINDOWS = 1.5  # that a training flight must hold
+LEVEL = 2.0  # times the largest healthy difference: a drift that has stopped is over no other limit, yet no healthier
+CEILING = 1.25  # times the limit: a sum goes no higher
+PRESUMES = "presumes the barometer healthy"
+PROMISE = "none; the limit is a tenth above the largest score of the training flight"
+
+
+def recipe(test: DriftTest, title: str, source: str) -> Recipe:
+    """The recipe of a test."""
+
+    def build(log: Log, seed: int, session: Session) -> Model:
+        session.tell("learning how two heights differ when healthy")
+        return drift(log, test)
+
+    return Recipe(test.name, f"{title}; {PRESUMES}", source, PROMISE, build, lambda log: _two_heights(test.name, log))
+
+
+def drift(log: Log, test: DriftTest) -> Model:
+    """Fit on a healthy flight: the difference of its two heights, and the limit of the test of it.
+
+    Raises:
+        LogError: not two heights, or too short a flight.
+    """
+    setting, channels = test.setting, len(log.channels)
+    part = difference(test.name, log, setting)
+    statistic = test.statistic(setting, channels)
+    off = Fixed(jnp.full(channels, jnp.inf))
+    deaf = monitor(log, part, statistic, off, setting, off)
+    score, level = (tape[:, part.measured] for tape in score_tape(deaf, log))
+    if not np.isfinite(score).any():
+        raise LogError(
+            f"{log.name} is never watched for {setting.window_s:g} s without a break, over which {test.name} looks "
+            "back; give it a longer flight, or one with fewer gaps."
+        )
+    limit = setting.margin * float(np.nanmax(score))
+    if isinstance(statistic, Cusum):
+        statistic = replace(statistic, ceiling=jnp.full_like(statistic.ceiling, CEILING * limit))
+    largest = LEVEL * float(np.nanmax(level))
+    own, lasting = (
+        Fixed(jnp.asarray(np.where(np.arange(channels) == part.measured, x, np.inf))) for x in (limit, largest)
+    )
+    heard = monitor(log, part, statistic, own, setting, lasting)
+    return _model(test.name, log, heard, part, {"limit": limit, "level": largest}, setting)
+
+
+def difference(name: str, log: Log, setting: Setting) -> Difference:
+    """The residual, fitted.
+
+    Raises:
+        LogError: not two heights, or too short a flight.
+    """
+    needed = LEAST_WINDOWS * setting.window_s
+    measured, reference = _two_heights(name, log)
+    if log.duration_s < needed:
+        raise LogError(
+            f"{log.name} lasts {log.duration_s:.0f} s, {name} needs {needed:.0f} s to learn what is healthy; give it a "
+            "longer flight."
+        )
+    part = Difference(
+        beat_s=jnp.asarray(setting.beat_s),
+        lag_s=jnp.zeros(()),
+        memory_s=jnp.asarray(setting.memory_s),
+        gap_s=setting.gap_s,
+        variance=jnp.ones(()),
+        measured=measured,
+        reference=reference,
+        channels=len(log.channels),
+    )
+    return fit_difference(part, log, setting.lagging)
+
+
+def _two_heights(name: str, log: Log) -> tuple[int, int]:
+    """Columns of the receiver's height and of the barometer's.
+
+    Raises:
+        LogError: not both.
+    """
+    found = roles(log)
+    if found.height is None or found.barometric is None:
+        lacks = "no height of a satellite receiver" if found.height is None else "no height of a barometer"
+        raise LogError(
+            f"{log.name} has {lacks}; {name} compares the two: name the columns in vehicle.toml, or take a method that "
+            "needs only one."
+        )
+    return found.height, found.barometric
+
+
+def monitor(
+    log: Log,
+    part: Difference,
+    statistic: Statistic,
+    threshold: Fixed,
+    setting: Setting,
+    level: Fixed | None = None,
+) -> Monitor:
+    """The height is out while its test is over the limit, or the difference itself over that of its `level`; the
+    barometer with the learned offset stands in.
+    """
+    channels = len(log.channels)
+    verdict_s = np.where(np.arange(channels) == part.measured, 1.5 * setting.beat_s, 0.0)
+    return Monitor(
+        residual=part,
+        branches=(Branch(statistic, threshold), *(() if level is None else (Branch(Absolute(), level),))),
+        decision=Exceed(),
+        recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(1.5 * setting.beat_s), channels),
+        hold_s=jnp.asarray(np.maximum(hold_s(log), verdict_s)),
+        owner=owners(log.channels, log.sensors),
+    )
+
+
+def _model(name: str, log: Log, heard: Monitor, part: Difference, limits: dict[str, float], setting: Setting) -> Model:
+    mine = np.arange(len(log.channels)) == part.measured
+    told = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "reference": log.channels[part.reference].path,
+        "lag_s": float(part.lag_s),
+        "window_s": setting.window_s,
+        **limits,
+        "not_watched": {c.path: "not compared" for c, m in zip(log.channels, mine, strict=True) if not m},
+    }
+    return Model(
+        method=name,
+        monitor=heard,
+        channels=log.channels,
+        sensors=log.sensors,
+        tests=tuple((test, channel.path) for test in (name, "level") for channel in log.channels),
+        watched=tuple(mine.tolist()),
+        tick_s=log.period_s,
+        sigma=tuple(np.where(mine, np.sqrt(float(part.variance)), 1.0).tolist()),
+        summary=told,
+    )

@@ -1,0 +1,136 @@
+"""What both observers of a height share: which height, how far a roll-out of it errs, and the monitor around it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.core.stage import Stage
+from sensorfault.logs.table import Log, LogError
+from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.residual.multistep_observer import MultistepObserver
+from sensorfault.stages.threshold.adaptive import Adaptive
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.fixes import Fixes
+from sensorfault.training.roll_out import errors
+from sensorfault.vehicles.fixed_wing import Roles, roles
+from sensorfault.vehicles.height import Climb, StepNetwork
+
+PER_HOUR = 1.0  # false alarms promised
+BLOCK_S = 10.0  # alarms within count once
+LEAST_WINDOWS = 20
+AGES = (1, 2, 5, 12, 25, 50, 100)  # steps after which it is measured how far a roll-out errs
+
+
+@dataclass(frozen=True)
+class Heights:
+    """A healthy log as an observer of its height sees it: the column of that height, and the roles of the others."""
+
+    log: Log
+    column: int
+    roles: Roles
+
+    @classmethod
+    def of(cls, name: str, log: Log) -> "Heights":
+        """The receiver's height, or the barometer's where there is no other.
+
+        Raises:
+            LogError: no height.
+        """
+        found = roles(log)
+        column = found.height if found.height is not None else found.barometric
+        if column is None:
+            raise LogError(
+                f"{log.name} has no altitude or height in metres, which {name} observes; name the columns in "
+                "vehicle.toml, or take another method."
+            )
+        return cls(log, column, found)
+
+    def fixes(self, columns: tuple[int, ...], start_s: float = -np.inf, end_s: float = np.inf) -> Fixes:
+        """New heights of a part of the log, with these inputs."""
+        return Fixes.of(self.log.between(start_s, end_s), self.column, columns)
+
+
+def observer(model: Climb | StepNetwork, fixes: Fixes, steps: tuple[int, ...], column: int) -> MultistepObserver:
+    """The residual for these numbers of steps, and how its variance grows with the age of a roll-out, as on `fixes`."""
+    ages = [n for n in AGES if len(fixes.windows(n)) >= LEAST_WINDOWS] or [1]
+    spread = np.mean(errors(model, fixes, ages) ** 2, axis=1)
+    return MultistepObserver(
+        model=model,
+        steps=jnp.asarray(steps),
+        ages=jnp.asarray(np.array(ages) * fixes.period_s),
+        variance=jnp.asarray(np.maximum.accumulate(np.maximum(spread, 1e-9))),
+        gap_s=jnp.asarray(fixes.gap_s),
+        column=column,
+        longest=max(steps),
+    )
+
+
+def monitor(
+    log: Log,
+    residual: Stage[Any, Any, Any, Any],
+    statistic: Stage[Any, Any, Any, Any],
+    threshold: Adaptive | Fixed,
+    horizon_s: float,
+    period_s: float,
+) -> Monitor:
+    """A height over any limit is out for that sample, and what was rolled out stands in for up to `horizon_s`."""
+    channels = len(log.channels)
+    return Monitor(
+        residual=residual,
+        branches=(Branch(statistic, threshold),),
+        decision=Exceed(),
+        recovery=Rebuild(jnp.asarray(horizon_s), jnp.asarray(1.5 * period_s), channels),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+    )
+
+
+def model(
+    name: str,
+    heights: Heights,
+    watching: Monitor,
+    observed: MultistepObserver,
+    period_s: float,
+    told: Mapping[str, Any],
+) -> Model:
+    """The model: one test for each number of steps."""
+    log, path = heights.log, heights.log.channels[heights.column].path
+    mine = np.arange(len(log.channels)) == heights.column
+    sigma = np.where(mine, np.sqrt(float(observed.variance[0])), 1.0)
+    tests = tuple((f"roll-out over {n * period_s:.3g} s", path) for n in np.asarray(observed.steps).tolist())
+    summary = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "steps": np.asarray(observed.steps).tolist(),
+        "inputs": [log.channels[i].path for i in observed.model.columns],
+        "not_watched": {c.path: "not foretold" for c, m in zip(log.channels, mine, strict=True) if not m},
+        **told,
+    }
+    return Model(
+        name,
+        watching,
+        log.channels,
+        log.sensors,
+        tests,
+        tuple(mine.tolist()),
+        log.period_s,
+        tuple(sigma.tolist()),
+        summary,
+    )
+
+
+def in_steps(spans_s: Sequence[float], fixes: Fixes) -> tuple[int, ...]:
+    """Spans of time in steps from one height to the next, one at least; rising."""
+    return tuple(sorted({max(round(span / fixes.period_s), 1) for span in spans_s}))
+
+
+def silent(tests: int) -> Float[Array, " K"]:
+    """Limits that nothing passes."""
+    return jnp.full(tests, jnp.inf)

@@ -1,0 +1,112 @@
+"""The multi-step observer without a network: the height rolled out by a measured vertical speed."""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.calibration.limits import tail_limit
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.height import height_observer
+from sensorfault.methods.height.height_observer import BLOCK_S, LEAST_WINDOWS, PER_HOUR, Heights
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
+from sensorfault.stages.statistic.horizons import Horizons
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.fixes import Fixes
+from sensorfault.training.session import Session
+from sensorfault.vehicles.height import Climb
+
+NAME = "kinematic-observer"
+SOURCES = ("receiver", "inertial", "barometric")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """`spans_s`: how long the roll-outs of the bank are [s], 0.2 to 60; in whole steps, those that the log can show.
+
+    `source` of the climb: the receiver's own speed as printed, another sensor's, or the barometer; by default the first
+    of them that the log has. `horizon_s`: a stand-in is believed for so long.
+    """
+
+    spans_s: tuple[float, ...] = (0.2, 1.0, 2.4, 5.0, 10.0, 30.0, 60.0)
+    source: str = ""
+    horizon_s: float = 30.0
+
+
+def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
+    """Fit on a healthy log; there is no chance in it.
+
+    Raises:
+        LogError: no height, no such vertical speed, or too few measurements that follow each other.
+    """
+    heights = Heights.of(NAME, log)
+    climb = climbing(heights, setting.source)
+    fixes = heights.fixes(climb.columns)
+    steps = _steps(fixes, setting)
+    watched = height_observer.observer(climb, fixes, steps, heights.column)
+    statistic, off = Horizons(heights.column), Fixed(height_observer.silent(len(steps)))
+    deaf = height_observer.monitor(log, watched, statistic, off, setting.horizon_s, fixes.period_s)
+    score = np.asarray(replay_log(deaf, log).scores[0])
+    limit = Fixed(jnp.asarray(tail_limit(score, log.period_s, PER_HOUR / len(steps), BLOCK_S)))
+    watching = height_observer.monitor(log, watched, statistic, limit, setting.horizon_s, fixes.period_s)
+    spans = [f"{n * fixes.period_s:.3g}" for n in steps]
+    told = {"limits": dict(zip(spans, np.asarray(limit.limit).tolist(), strict=True))}
+    return height_observer.model(NAME, heights, watching, watched, fixes.period_s, told)
+
+
+def climbing(heights: Heights, source: str = "") -> Climb:
+    """The step model of this source.
+
+    Raises:
+        LogError: an unknown source, or the log does not have it.
+    """
+    found, log = heights.roles, heights.log
+    baro = found.barometric if found.barometric != heights.column else None
+    have = {
+        "receiver": (found.vertical, found.upward, True),
+        "inertial": (found.inertial, found.inertial_upward, True),
+        "barometric": (baro, 1.0, False),
+    }
+    if source and source not in SOURCES:
+        raise LogError(f"{NAME}: '{source}' is no source of a vertical speed; take one of {', '.join(SOURCES)}.")
+    for name in (source,) if source else SOURCES:
+        column, upward, speed = have[name]
+        if column is not None:
+            return Climb(jnp.asarray(upward), (column,), speed)
+    what = f"no {source} vertical speed" if source else "neither a vertical speed nor a second height"
+    raise LogError(
+        f"{log.name} has {what}, by which {NAME} rolls {log.channels[heights.column].path} out; name the columns in "
+        "vehicle.toml, or take another method."
+    )
+
+
+def _steps(fixes: Fixes, setting: Setting) -> tuple[int, ...]:
+    """The bank's numbers of steps.
+
+    Raises:
+        LogError: not even the shortest can be shown.
+    """
+    wanted = height_observer.in_steps(setting.spans_s, fixes)
+    steps = tuple(n for n in wanted if len(fixes.windows(n)) >= LEAST_WINDOWS)
+    if not steps:
+        raise LogError(
+            f"{fixes.name} has {len(fixes.windows(wanted[0]))} unbroken runs of {wanted[0]} steps of its height, "
+            f"{NAME} needs {LEAST_WINDOWS}; give it more data, or data with fewer gaps."
+        )
+    return steps
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    return build(log, seed, session)
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Height rolled out by a measured vertical speed over 0.2 s to 60 s, one limit for each",
+    source="Wang S. et al., with their vertical speed and without their network",
+    promise=f"{PER_HOUR:g} false alarm an hour in all, from the tails of the healthy residuals",
+    build=_build,
+    needs=lambda log: climbing(Heights.of(NAME, log)),
+)

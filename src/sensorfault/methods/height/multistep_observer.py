@@ -1,0 +1,141 @@
+"""Paper D: the height of an aircraft foretold over N steps by a network, under a limit that follows its error."""
+
+from dataclasses import dataclass, field, replace
+from statistics import NormalDist
+
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.calibration.limits import tail_limit
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.height import height_observer
+from sensorfault.methods.height.height_observer import BLOCK_S, PER_HOUR, Heights
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import replay_log
+from sensorfault.stages.residual.several import Several
+from sensorfault.stages.statistic.horizons import Horizons
+from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.threshold.adaptive import Adaptive
+from sensorfault.training.fixes import Fixes
+from sensorfault.training.height_kalman import fit_height_kalman
+from sensorfault.training.multistep import Schedule, train_steps
+from sensorfault.training.roll_out import errors
+from sensorfault.training.session import Session
+
+NAME = "multistep-observer"
+TAUGHT = 0.7  # of the healthy log; the limits come from the rest
+ALPHA = 0.01  # false alarms that the companion's chi-square test allows, as printed
+CHI_SQUARE = NormalDist().inv_cdf(1 - ALPHA / 2) ** 2  # of one degree of freedom
+LOUD = 1e9
+
+
+@dataclass(frozen=True)
+class Setting:
+    """`steps` N, each a member of the bank; 12 is the paper's best. `spans_s`: instead, in seconds. The network is
+    trained over the longest. `horizon_s`: a stand-in is believed for so long. `printed`: a = b = 1; by default both are
+    what the promise asks for.
+    """
+
+    steps: tuple[int, ...] = (12,)
+    spans_s: tuple[float, ...] = ()
+    horizon_s: float = 10.0
+    printed: bool = False
+    schedule: Schedule = field(default_factory=Schedule)
+
+
+def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
+    """Fit on a healthy log: the height from vertical speed, pitch, throttle and elevator, as far as the log has them.
+
+    Raises:
+        LogError: no height, nothing that foretells it, or too few measurements that follow each other.
+    """
+    heights, cut = Heights.of(NAME, log), log.time[0] + TAUGHT * log.duration_s
+    columns = _columns(heights)
+    learn, unseen = heights.fixes(columns, end_s=cut), heights.fixes(columns, cut)
+    steps = _steps(learn, unseen, setting)
+    session.tell(f"teaching a network over {max(steps)} steps")
+    taught = train_steps(learn, (max(steps),), (seed,), setting.schedule)
+    (network,) = taught.nets[0]
+    session.tell("measuring what it leaves")
+    watched = height_observer.observer(network, unseen, steps, heights.column)
+    companion = fit_height_kalman(log, heights.column, heights.roles)
+    mine = np.arange(len(log.channels)) == heights.column
+    residual = Several((watched, companion), jnp.asarray(np.stack([mine, mine & False])))
+    threshold = Adaptive(
+        a=jnp.ones(len(steps)),
+        b=jnp.ones(len(steps)),
+        typical=jnp.asarray(np.sqrt(np.mean(errors(network, unseen, steps) ** 2, axis=1))),
+        chi_square=jnp.asarray(CHI_SQUARE),
+        part=1,
+        column=heights.column,
+    )
+    if not setting.printed:
+        threshold = _calibrated(heights, residual, threshold, setting, unseen.period_s, cut)
+    weights = {"a": np.asarray(threshold.a).tolist(), "b": np.asarray(threshold.b).tolist()}
+    told = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), **weights}
+    watching = height_observer.monitor(
+        log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s
+    )
+    return height_observer.model(NAME, heights, watching, watched, unseen.period_s, told)
+
+
+def _columns(heights: Heights) -> tuple[int, ...]:
+    """What the network is told besides the height.
+
+    Raises:
+        LogError: nothing.
+    """
+    found = heights.roles
+    climb = found.vertical if found.vertical is not None else found.inertial
+    columns = tuple(i for i in (climb, *found.inputs) if i is not None)
+    if not columns:
+        raise LogError(
+            f"{heights.log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the "
+            "height; name the columns in vehicle.toml, or take another method."
+        )
+    return columns
+
+
+def _steps(learn: Fixes, unseen: Fixes, setting: Setting) -> tuple[int, ...]:
+    """The bank's numbers of steps.
+
+    Raises:
+        LogError: one of them cannot be judged on what is not learned from.
+    """
+    steps = height_observer.in_steps(setting.spans_s, learn) if setting.spans_s else setting.steps
+    for n in steps:
+        if not len(unseen.windows(n)):
+            raise LogError(
+                f"{learn.name} has no unbroken run of {n} steps of its height in its last part, on which {NAME} sets "
+                "its limits; give it more data, or take fewer steps."
+            )
+    return steps
+
+
+def _statistic(heights: Heights) -> Of:
+    return Of(Horizons(heights.column), 0)
+
+
+def _calibrated(
+    heights: Heights, residual: Several, threshold: Adaptive, setting: Setting, period_s: float, cut: float
+) -> Adaptive:
+    """a = b such that a healthy log passes the limit as often as promised: from what was not learned from."""
+    loud = replace(threshold, a=threshold.a * LOUD, b=threshold.b * LOUD)
+    log = heights.log
+    watching = height_observer.monitor(log, residual, _statistic(heights), loud, setting.horizon_s, period_s)
+    tape = replay_log(watching, log)
+    ratio = np.asarray(tape.scores[0]) / np.asarray(tape.limits[0]) * LOUD
+    factor = tail_limit(ratio[log.time >= cut], log.period_s, PER_HOUR / ratio.shape[1], BLOCK_S)
+    return replace(threshold, a=jnp.asarray(factor), b=jnp.asarray(factor))
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Height rolled out over 12 steps by a network that feeds back what it foretold, under a limit that follows a "
+    "companion filter and the observer's own error",
+    source="Wang S. et al., multi-step neural network observer of a flapping-wing aircraft",
+    promise=f"{PER_HOUR:g} false alarm an hour, from the tail of the residual over its limit on data not learned from",
+    build=build,
+    needs=lambda log: _columns(Heights.of(NAME, log)),
+)

@@ -1,0 +1,27 @@
+"""Paper A's comparator of the extreme learning machine: the same autoencoder, trained by backpropagation."""
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.inertial.reconstructed import reconstructed
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.training.backprop import PLAN, fit_backprop
+from sensorfault.training.gradient import Plan
+from sensorfault.training.session import Session
+
+NAME = "bp-autoencoder"
+
+
+def build(log: Log, seed: int, session: Session, plan: Plan = PLAN) -> Model:
+    """Fit on a healthy log."""
+    return reconstructed(NAME, log, lambda rows, scaling: fit_backprop(rows, scaling, 32, plan, seed, session))
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="The autoencoder by backpropagation, norm of the reconstruction error, scaled largest training error",
+    source="Min et al. 2021, section 3.1: the comparator of the extreme learning machine",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=build,
+    needs=lambda log: Training.of(NAME, log),
+)

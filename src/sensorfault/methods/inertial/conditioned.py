@@ -1,0 +1,64 @@
+"""A conditioning residual made into a monitor."""
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.calibration.open_loop import score_tape
+from sensorfault.core.monitor import Monitor
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.common.multivariate import LEAST_ROWS, Training, deaf, limited
+from sensorfault.runtime.model import Model
+from sensorfault.stages.statistic.mahalanobis import Mahalanobis
+from sensorfault.training.conditioning import LAGS, fit_conditioning, unbroken
+from sensorfault.training.cross_validation import BLOCKS
+
+OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
+READMIT_S = 0.5  # a channel is taken at its own word again so long after the last accusation
+
+
+def conditioned(name: str, log: Log, levels: bool = True, cross_validated: bool = True) -> Model:
+    """Fit on a healthy log: weights, then the limits from a replay with the limits off.
+
+    Without `levels` changes are conditioned on changes. The largest healthy score is that of the training data or, with
+    `cross_validated`, of contiguous blocks left out of the fit, if it is larger.
+
+    Raises:
+        LogError: too few complete rows, or nothing to watch.
+    """
+    training = in_a_row(name, log)
+    residual = fit_conditioning(log.time, log.value, training.rows, training.watched, levels=levels)
+    monitor = deaf(log, residual, Mahalanobis(single=True), READMIT_S)
+    score, runs = score_tape(monitor, log)
+    # (10) max(err)
+    largest = float(np.nanmax(score))
+    if cross_validated:
+        largest = max(largest, float(np.nanmax(unseen_scores(monitor, training, levels))))
+    return limited(name, training, monitor, residual.cov, "mahalanobis", largest, runs)
+
+
+def in_a_row(name: str, log: Log) -> Training:
+    """The log as conditioning sees it: rows that follow LAGS others, of channels that come with nearly every tick.
+
+    Raises:
+        LogError: nothing to watch, or too few such rows.
+    """
+    training = Training.of(name, log, OFTEN)
+    rows = int(unbroken(log.time, training.rows, LAGS).sum())
+    if rows < LEAST_ROWS:
+        raise LogError(
+            f"{log.name} has {rows} rows that follow {LAGS} complete ones without a gap, {name} needs {LEAST_ROWS}; "
+            "give it more data, or watch fewer channels."
+        )
+    return training
+
+
+def unseen_scores(deaf: Monitor, training: Training, levels: bool) -> Float[np.ndarray, "T K"]:
+    """The joint test's score of each block of the log, by weights fitted on the other blocks."""
+    log, unseen = training.log, []
+    for block in np.array_split(np.arange(len(log)), BLOCKS):
+        known = training.rows.copy()
+        known[block] = False
+        other = fit_conditioning(log.time, log.value, known, training.watched, levels=levels)
+        unseen.append(score_tape(eqx.tree_at(lambda m: m.residual, deaf, other), log)[0][block])
+    return np.concatenate(unseen)

@@ -1,0 +1,25 @@
+"""Paper A's detector of instantaneous faults: an extreme learning machine that copies a healthy sample."""
+
+from functools import partial
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.inertial.reconstructed import reconstructed
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.training.elm import fit_elm
+from sensorfault.training.session import Session
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    return reconstructed(RECIPE.name, log, lambda rows, scaling: fit_elm(rows, scaling, hidden=32, c=1e3, seed=seed))
+
+
+RECIPE = Recipe(
+    name="elm-autoencoder",
+    title="Extreme-learning autoencoder, norm of the reconstruction error, scaled largest training error",
+    source="Min et al. 2021, section 2.1, equations (3)-(11)",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=_build,
+    needs=partial(Training.of, "elm-autoencoder"),
+)

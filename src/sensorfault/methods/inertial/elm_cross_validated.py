@@ -1,0 +1,30 @@
+"""Paper A's autoencoder under a limit that knows what it does to a drive it has not seen."""
+
+from functools import partial
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.inertial.reconstructed import reconstructed
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.training.elm import fit_elm
+from sensorfault.training.session import Session
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    return reconstructed(
+        RECIPE.name,
+        log,
+        lambda rows, scaling: fit_elm(rows, scaling, hidden=32, c=1e3, seed=seed),
+        cross_validated=True,
+    )
+
+
+RECIPE = Recipe(
+    name="elm-cross-validated",
+    title="Extreme-learning autoencoder, norm of the reconstruction error, scaled largest error on blocks left out",
+    source="Min et al. 2021, section 2.1; the limit by cross-validation instead of equation (10)'s training error",
+    promise="none in numbers: the limit is the largest error on healthy blocks left out of the fit, scaled",
+    build=_build,
+    needs=partial(Training.of, "elm-cross-validated"),
+)

@@ -1,0 +1,23 @@
+"""What the last few rows lead to expect of the newest one: the plain method that a network has to beat."""
+
+from functools import partial
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.inertial.conditioned import conditioned, in_a_row
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.training.session import Session
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    return conditioned(RECIPE.name, log)
+
+
+RECIPE = Recipe(
+    name="linear-conditioning",
+    title="Newest row given the four before it, largest whitened residual of one channel, scaled largest unseen score",
+    source="conditional mean of a Gaussian vector; the limit as Min et al. 2021, equations (10)-(11), cross-validated",
+    promise="none in numbers: the limit is the largest score on healthy blocks left out of the fit, scaled",
+    build=_build,
+    needs=partial(in_a_row, "linear-conditioning"),
+)

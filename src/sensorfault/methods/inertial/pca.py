@@ -1,0 +1,25 @@
+"""The baseline every reconstruction has to beat: three principal components under the same limit."""
+
+from functools import partial
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.inertial.reconstructed import reconstructed
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.training.pca import fit_pca
+from sensorfault.training.session import Session
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    return reconstructed(RECIPE.name, log, lambda rows, scaling: fit_pca(rows, scaling, components=3))
+
+
+RECIPE = Recipe(
+    name="pca",
+    title="Principal components, norm of the reconstruction error, scaled largest training error",
+    source="Jackson & Mudholkar 1979; the limit as Min et al. 2021, equations (10)-(11)",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=_build,
+    needs=partial(Training.of, "pca"),
+)

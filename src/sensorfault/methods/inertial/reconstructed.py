@@ -1,0 +1,42 @@
+"""A reconstruction residual made into a monitor: what the autoencoder and its baseline share."""
+
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.calibration.extremes import explained, explained_max
+from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.scaling import Scaling
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.multivariate import Training, deaf, limited
+from sensorfault.runtime.model import Model
+from sensorfault.stages.statistic.exchange import Exchange
+from sensorfault.training.cross_validation import Fit, largest_unseen_norm
+
+READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
+
+
+def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False, robust: bool = False) -> Model:
+    """Fit on a healthy log: weights, then the limits from a replay with the limits off.
+
+    The largest healthy error is that of the training data, as published; with `cross_validated` that of blocks left out
+    of the fit, if it is larger. With `robust` a few contaminated rows ruin neither scaling nor weights nor limit: what
+    lies farther out than the rest explains is not learned from and has no say in what is largest.
+
+    Raises:
+        LogError: too few complete rows, or nothing to watch.
+    """
+    training = Training.of(name, log)
+    watched = training.watched
+    value = np.where(watched, log.value, 0.0)[training.rows]
+    if robust:
+        value = value[explained(value).all(axis=1)]
+    scaling = Scaling.of(value, watched)
+    residual = fit(value, scaling)
+    monitor = deaf(log, residual, Exchange(jnp.asarray(scaling.half)), READMIT_S)
+    norm, runs = score_tape(monitor, log)
+    # (10) max(err), over the training data
+    tested = norm[np.isfinite(norm)]
+    largest = explained_max(tested) if robust else float(tested.max())
+    if cross_validated:
+        largest = max(largest, largest_unseen_norm(value, watched, fit, scaling.half))
+    return limited(name, training, monitor, residual.cov, "norm", largest, runs)

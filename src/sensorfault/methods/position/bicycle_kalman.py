@@ -1,0 +1,126 @@
+"""Does the car go where its wheels point: a Kalman filter on the kinematic bicycle, judged at once and over 10 s."""
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from sensorfault.calibration.gumbel import gumbel_limit
+from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.whiteness import whiten
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log
+from sensorfault.methods.recipe import Recipe
+from sensorfault.numerics.normality import jarque_bera_quantile
+from sensorfault.runtime.model import MOTION, Model, hold_s, owners
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.bicycle_kalman import LOST_S
+from sensorfault.stages.statistic.normality import Normality
+from sensorfault.stages.statistic.whitened import Whitened
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.bicycle import WARM_S, check_bicycle, fit_bicycle, normalised
+from sensorfault.training.session import Session
+from sensorfault.vehicles.car import roles
+
+WINDOW_S = 10.0  # of Jarque and Bera's test, as published
+INSTANT_BLOCK_S = 5.0  # one alarm counts once in so long
+PER_HOUR = 1.0  # false alarms: half for the instant tests, half for the windows
+MARGIN = 1.25  # on the windows' limits, for what a drive of minutes has not shown
+LEAST_Z = 4.5  # no mean or variance is judged more sharply than sliding windows of chance alone allow
+
+
+def bicycle_kalman(name: str, log: Log) -> Model:
+    """Fit on a healthy drive of a car.
+
+    Raises:
+        LogError: no position, speed, or yaw rate and steering angle, a wheelbase of zero, or a drive that never moves.
+    """
+    filter = fit_bicycle(log, roles(log), log.wheelbase_m, log.steering_ratio)
+    measured, channels = filter.columns.measured, len(log.channels)
+    white = whiten(normalised(filter, log)[log.time > log.time[0] + WARM_S][:, list(measured)], _warm(log), WINDOW_S)
+    window = Normality(
+        watched=measured,
+        channels=channels,
+        memory=jnp.asarray(white.memory),
+        sigma=jnp.asarray(white.sigma),
+        least=jnp.asarray(white.least),
+        every=jnp.asarray(white.every, float),
+        window_s=jnp.asarray(WINDOW_S),
+    )
+    groups = (filter.columns.position, filter.columns.velocity)
+    silent = [Fixed(jnp.full(k, jnp.inf)) for k in (len(groups), 3 * len(measured))]
+    deaf = Monitor(
+        residual=filter,
+        branches=(
+            Branch(Whitened(groups, channels), silent[0], subject=MOTION, memory_s=LOST_S),
+            Branch(window, silent[1], gates=False, subject=MOTION, memory_s=LOST_S + WINDOW_S),
+        ),
+        decision=Exceed(),
+        recovery=Drop(),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+    )
+    monitor = eqx.tree_at(lambda m: [b.threshold.limit for b in m.branches], deaf, _limits(deaf, window, log))
+    tests = [f"whitened innovation of {what}" for what in ("position", "velocity")]
+    paths = [log.channels[c].path for c in measured]
+    tests += [f"{test} of {path}" for test in ("Jarque-Bera", "mean", "variance") for path in paths]
+    told = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "turned_by": "steering angle" if filter.columns.steering else "yaw rate",
+        "not_watched": {c.path: "not measured" for i, c in enumerate(log.channels) if i not in measured},
+    }
+    return Model(
+        method=name,
+        monitor=monitor,
+        channels=log.channels,
+        sensors=log.sensors,
+        tests=tuple((test, MOTION) for test in tests),
+        watched=tuple(i in measured for i in range(channels)),
+        tick_s=log.period_s,
+        sigma=(1.0,) * channels,
+        summary=told,
+    )
+
+
+def _warm(log: Log) -> Float[np.ndarray, " T"]:
+    times: Float[np.ndarray, " T"] = log.time[log.time > log.time[0] + WARM_S]
+    return times
+
+
+def _limits(deaf: Monitor, window: Normality, log: Log) -> list[Float[Array, " K"]]:
+    """From the training drive: half of the alarms allowed to the instant tests, half to the windows."""
+    rows = log.time > log.time[0] + WARM_S
+    instant, windows = (tape[rows] for tape in score_tape(deaf, log))
+    at_once = gumbel_limit(instant, _warm(log), PER_HOUR / 2 / instant.shape[1], INSTANT_BLOCK_S)
+    share = PER_HOUR / 2 / windows.shape[1]
+    width = len(window.watched)
+    # of the root, which is about the kurtosis: Jarque and Bera's statistic has a heavy tail
+    normal = gumbel_limit(np.sqrt(windows[:, :width]), _warm(log), share, WINDOW_S) ** 2
+    chance = 1 - share * WINDOW_S / 3600
+    finite = jarque_bera_quantile(WINDOW_S / np.asarray(window.every) / _periods(log, window.watched), chance)
+    rest = gumbel_limit(windows[:, width:], _warm(log), share, WINDOW_S)
+    long = MARGIN * np.concatenate([np.maximum(normal, finite), np.maximum(rest, LEAST_Z)])
+    return [jnp.asarray(at_once), jnp.asarray(long)]
+
+
+def _periods(log: Log, columns: tuple[int, ...]) -> Float[np.ndarray, " W"]:
+    return np.array([float(np.median(np.diff(log.time[log.fresh[:, c]]))) for c in columns])
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    session.tell("fitting noise and lags of the bicycle")
+    return bicycle_kalman(RECIPE.name, log)
+
+
+RECIPE = Recipe(
+    name="bicycle-kalman",
+    title="Kalman filter on the kinematic bicycle: largest whitened innovation at once, Jarque-Bera, mean and variance "
+    "over 10 s; judges the motion, given healthy sensors",
+    source="Min et al. 2021, section 3, equations (16)-(26)",
+    promise="one false alarm an hour, extrapolated from the largest scores of the training drive's blocks, and a "
+    "quarter on top of the windows' limits",
+    build=_build,
+    needs=lambda log: check_bicycle(log, roles(log)),
+)

@@ -1,0 +1,57 @@
+"""What persistence and linear extrapolation share: a car's position judged as one, an arm's joints each by itself."""
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.common import per_channel
+from sensorfault.methods.common.watch import watchable
+from sensorfault.methods.position.predicted import Positions, limited
+from sensorfault.runtime.model import MISSED, Model
+from sensorfault.stages.residual.extrapolation import Extrapolation
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.vehicles.arm import joints
+
+
+def from_last(name: str, log: Log, order: int) -> Model:
+    """The monitor of an extrapolation from the last measurements.
+
+    Raises:
+        LogError: neither joints nor positions; joints that rest; too few positions, or a drive that never moves.
+    """
+    positions = joints_or_position(name, log)
+    if positions is None:
+        return _of_arm(name, log, order)
+    residual = Extrapolation(
+        watched=jnp.asarray(positions.mark(positions.columns)),
+        angle=jnp.asarray(positions.mark(positions.turning)),
+        cov=jnp.eye(len(log.channels)),
+        stale_s=jnp.asarray(positions.stale_s),
+        order=order,
+    )
+    return limited(name, positions, residual, {})
+
+
+def joints_or_position(name: str, log: Log) -> Positions | None:
+    """The positions; None if the log is of joints.
+
+    Raises:
+        LogError: neither; too few positions, or a drive that never moves.
+    """
+    found = joints(log)
+    return None if found.rates or found.angles else Positions.of(name, log)
+
+
+def _of_arm(name: str, log: Log, order: int) -> Model:
+    """Encoders count on, so no angle is taken within half a turn."""
+    watched, reasons = watchable(log)
+    residual = Extrapolation(
+        watched=jnp.asarray(watched),
+        angle=jnp.zeros(len(watched), bool),
+        cov=jnp.eye(len(watched)),
+        stale_s=jnp.full(len(watched), (MISSED + 0.5) * log.period_s),
+        order=order,
+    )
+    theta, spread = per_channel.healthy(log, residual)
+    known = eqx.tree_at(lambda r: r.cov, residual, jnp.diag(jnp.asarray(spread**2)))
+    return per_channel.model(name, log, known, Fixed(jnp.asarray(theta)), spread, {"not_watched": reasons})

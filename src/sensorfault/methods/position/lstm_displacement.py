@@ -1,0 +1,124 @@
+"""Paper A's network asked for what a jam cannot fake: the way of the last second, without a look at its positions."""
+
+from dataclasses import dataclass, field
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.position.predicted import GAP, Positions, limited
+from sensorfault.methods.recipe import Recipe
+from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.runners import replay, samples
+from sensorfault.stages.residual.displacement import Displacement, Seen
+from sensorfault.training.gradient import Plan, train
+from sensorfault.training.initial import new_lstm
+from sensorfault.training.prediction import Inputs
+from sensorfault.training.session import Session
+from sensorfault.training.windows import Windows
+from sensorfault.vehicles.car import moving
+
+NAME = "lstm-displacement"
+SECOND = 1.0  # of the position that is not seen [s]
+STRIDE_S = 0.1  # samples averaged to one row of the window
+LEAST_MEND = 0.1  # [m]
+
+
+@dataclass(frozen=True)
+class Size:
+    """Cells of the layers, and how they are trained."""
+
+    cells: tuple[int, ...] = (16, 16)
+    plan: Plan = field(default_factory=Plan)
+
+
+def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
+    """Fit on a healthy log.
+
+    Raises:
+        LogError: no positions, neither velocity nor inertial unit, too little of them, or a drive that never moves.
+    """
+    positions, inertial = _told_by(log)
+    untrained = _untrained(positions, inertial, seed, size)
+    x = samples(log.time, log.value, log.fresh)
+    deaf = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
+    keep = jax.jit(lambda m, s, rows: replay(m, s, rows, lambda r: (r.residual.extra, r.residual.valid))[1])
+    off = eqx.tree_at(lambda m: m.branches[0].threshold.largest, deaf, jnp.full(1, jnp.inf))
+    seen, valid = jax.tree.map(np.asarray, keep(off, off.init(), x))
+    windows, mend = _windows(seen, valid[:, list(positions.columns)].all(axis=1))
+    network = train(untrained.network, windows, size.plan, seed, session).net
+    residual = eqx.tree_at(lambda r: (r.network, r.mend), untrained, (network, jnp.asarray(mend)))
+    told = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
+    return limited(NAME, positions, residual, told, METRE / _cosines(positions))
+
+
+METRE = 1 / SEMI_MAJOR_AXIS  # [rad]
+
+
+def _cosines(positions: Positions) -> np.ndarray:
+    """How much shorter a metre's angle is than on the equator, for latitude and longitude."""
+    latitude = np.nanmedian(positions.log.value[:, positions.columns[0]])
+    return np.array([1.0, max(float(np.cos(latitude)), 1e-3)])
+
+
+def _untrained(positions: Positions, inertial: tuple[int, ...], seed: int, size: Size) -> Displacement:
+    log, found = positions.log, positions.roles
+    inputs = Inputs.of(log, inertial, 0, ())
+    velocity = found.velocity or ()
+    fastest = 20.0
+    if found.velocity is not None:
+        speeds = [v for v in (30.0, 20.0, 10.0, 5.0, 2.0) if len(moving(log, found, v))]
+        fastest = speeds[0] if speeds else 2.0
+    stride = max(1, round(STRIDE_S / log.period_s))
+    steps = max(1, round(SECOND / log.period_s / stride))
+    return Displacement(
+        network=new_lstm(seed, len(inertial) + len(velocity) + 2, 2, size.cells),
+        center=jnp.asarray(inputs.center),
+        half=jnp.asarray(inputs.half),
+        fastest=jnp.asarray(fastest),
+        mend=jnp.asarray(1.0),
+        cov=jnp.eye(len(log.channels)),
+        gap_s=jnp.asarray(GAP * log.period_s),
+        stale_s=jnp.asarray(positions.stale_s[list(positions.columns)].max()),
+        size=steps * stride,
+        stride=stride,
+        position=positions.columns,
+        inertial=inertial,
+        velocity=velocity,
+        polar=found.polar,
+    )
+
+
+def _windows(seen: Seen, valid: np.ndarray) -> tuple[Windows, float]:
+    """What the network is to learn: the way that `base` leaves, in units of its healthy size [m]."""
+    left = np.asarray(seen.way - seen.base)[valid]
+    mend = max(float(np.sqrt((left**2).mean())) if len(left) else 0.0, LEAST_MEND)
+    rows = np.asarray(seen.window)[valid]
+    count, length, width = rows.shape
+    return Windows(rows.reshape(-1, width), np.arange(count) * length, left / mend, length), mend
+
+
+def _told_by(log: Log) -> tuple[Positions, tuple[int, ...]]:
+    """The positions, and the columns of the inertial unit."""
+    positions = Positions.of(NAME, log)
+    found = positions.roles
+    inertial = (*(found.gyro or ()), *(found.accelerometer or ()))
+    if not inertial and found.velocity is None:
+        raise LogError(
+            f"{log.name} has neither gyro, accelerometer nor velocity, from which {NAME} tells the way; "
+            "name the columns in vehicle.toml, or take another method."
+        )
+    return positions, inertial
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Displacement of the last second by an LSTM that does not see its positions, scaled largest training error",
+    source="after Min et al. 2021, section 2.2, for jams that repeat the last position",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=build,
+    needs=_told_by,
+)

@@ -1,0 +1,44 @@
+"""Paper A's detector of transitional faults: a long short-term memory that predicts the position."""
+
+from dataclasses import dataclass, field
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.position.predicted import LENGTH, Positions, from_windows
+from sensorfault.methods.recipe import Recipe
+from sensorfault.numerics.networks.lstm import Lstm
+from sensorfault.runtime.model import Model
+from sensorfault.training.gradient import Plan, train
+from sensorfault.training.initial import new_lstm
+from sensorfault.training.session import Session
+from sensorfault.training.windows import Windows
+
+NAME = "lstm-predictor"
+
+
+@dataclass(frozen=True)
+class Size:
+    """Rows of the window, cells of the layers, and how they are trained."""
+
+    length: int = LENGTH
+    cells: tuple[int, ...] = (16, 16)
+    plan: Plan = field(default_factory=Plan)
+
+
+def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
+    """Fit on a healthy log."""
+
+    def fit(windows: Windows) -> Lstm:
+        network = new_lstm(seed, windows.rows.shape[1], windows.target.shape[1], size.cells)
+        return train(network, windows, size.plan, seed, session).net
+
+    return from_windows(NAME, log, size.length, fit)
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Position predicted by two LSTM layers from the 30 samples before, scaled largest training error",
+    source="Min et al. 2021, section 2.2, equations (12)-(15)",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=build,
+    needs=lambda log: Positions.of(NAME, log),
+)

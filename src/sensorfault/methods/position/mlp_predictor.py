@@ -1,0 +1,45 @@
+"""Paper A's first comparator of the LSTM: a feed-forward network of the same shape."""
+
+from dataclasses import dataclass, field
+
+from sensorfault.logs.table import Log
+from sensorfault.methods.position.predicted import LENGTH, Positions, from_windows
+from sensorfault.methods.recipe import Recipe
+from sensorfault.numerics.networks.dense import Mlp
+from sensorfault.runtime.model import Model
+from sensorfault.training.gradient import Plan, train
+from sensorfault.training.initial import new_mlp
+from sensorfault.training.session import Session
+from sensorfault.training.windows import Windows
+
+NAME = "mlp-predictor"
+
+
+@dataclass(frozen=True)
+class Size:
+    """Rows of the window, units of the hidden layers, and how they are trained."""
+
+    length: int = LENGTH
+    hidden: tuple[int, ...] = (16, 16)
+    plan: Plan = field(default_factory=Plan)
+
+
+def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
+    """Fit on a healthy log."""
+
+    def fit(windows: Windows) -> Mlp:
+        inputs = windows.length * windows.rows.shape[1]
+        network = new_mlp(seed, inputs, windows.target.shape[1], size.hidden)
+        return train(network, windows, size.plan, seed, session).net
+
+    return from_windows(NAME, log, size.length, fit)
+
+
+RECIPE = Recipe(
+    name=NAME,
+    title="Position predicted by two hidden layers from the 30 samples before, scaled largest training error",
+    source="Min et al. 2021, section 3.2: the comparator of the LSTM",
+    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    build=build,
+    needs=lambda log: Positions.of(NAME, log),
+)

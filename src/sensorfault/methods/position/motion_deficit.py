@@ -1,0 +1,228 @@
+"""Does the position go where the velocity says, and the velocity as the inertial unit says."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool
+
+from sensorfault.calibration.limits import tail_limit
+from sensorfault.calibration.open_loop import score_tape
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.recipe import Recipe
+from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
+from sensorfault.numerics.local import FARTHEST
+from sensorfault.runtime.model import TOGETHER, Model, hold_s, owners
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.residual.motion_deficit import MotionDeficit
+from sensorfault.stages.residual.several import Several
+from sensorfault.stages.residual.velocity_deficit import VelocityDeficit
+from sensorfault.stages.statistic.deficit import Deficit
+from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.statistic.shortfall import Shortfall
+from sensorfault.stages.statistic.slippage import Slippage
+from sensorfault.stages.statistic.stuck_position import Standing
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.deficit import fit_deficit, fit_velocity
+from sensorfault.training.mounting import fit_mounting, inertial
+from sensorfault.training.session import Session
+from sensorfault.vehicles.car import LEAST_SPEED, Roles, moving, roles
+from sensorfault.vehicles.inertial import Inertial
+
+HORIZONS_S = 0.25, 1.0  # a jump, and a way; of a slow receiver a period of its fixes, and four
+JITTER = 0.9  # of a period there may be between two fixes
+SHORT_S = 0.3  # of the shortfall, at least: three fixes at 10 Hz
+HALF = 2.0  # ... and more than half of the way is missing
+FLOOR_M = 0.5  # less way missing is no jam worth an alarm
+AFRESH_S = 30.0  # a longer fault is forgotten: no lock-out
+MEMORY_S = 4.0  # of the inertial unit's own velocity
+LED_S = 8.0  # without a trusted velocity for longer it knows no better than the receiver
+REBUILD_S = 10.0  # a stand-in is believed for so long
+READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
+PER_HOUR = 1.0  # false alarms that the limits are extrapolated to, for all tests together
+MARGIN = 1.25  # on every limit, for what a drive of minutes has not shown
+LEAST_MOVING_S = 20.0
+SLOTS = 15  # a reference every 0.08 s: at 10 Hz every fix is one, and none is older than it need be
+
+Test = tuple[tuple[str, ...], Any, float]  # names of the tests, statistic, floor of their limits
+
+
+def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
+    """Fit on a healthy drive; with `repeats` False an exact repeat of the position counts for no more than any other.
+
+    Raises:
+        LogError: no position, no velocity, a drive that never moves, or one at a pole.
+    """
+    found = _checked(log)
+    unit, reason = _unit(log, found)
+    parts, answers, tests = _parts(log, found, unit, repeats)
+    channels, count = len(log.channels), sum(len(names) for names, _, _ in tests)
+    deaf = Monitor(
+        residual=Several(parts, jnp.stack(answers)),
+        branches=tuple(
+            Branch(test, Fixed(jnp.full(len(names), jnp.inf)), memory_s=_presumes_s(test)) for names, test, _ in tests
+        ),
+        decision=Exceed(share=1.0),
+        recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(READMIT_S), channels),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+        together=False,
+    )
+    limits = [
+        np.maximum(MARGIN * tail_limit(scores, log.period_s, PER_HOUR / count), floor)
+        for (_, _, floor), scores in zip(tests, score_tape(deaf, log), strict=True)
+    ]
+    monitor = eqx.tree_at(
+        lambda m: [branch.threshold.limit for branch in m.branches], deaf, [jnp.asarray(limit) for limit in limits]
+    )
+    watched = np.asarray(jnp.stack(answers).any(axis=0))
+    told = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "not_watched": {
+            c.path: "no part of the comparison" for c, w in zip(log.channels, watched, strict=True) if not w
+        },
+    }
+    if reason:
+        told["cannot"] = {"velocity against the inertial unit": reason}
+    return Model(
+        method=name,
+        monitor=monitor,
+        channels=log.channels,
+        sensors=log.sensors,
+        tests=tuple(test for names, statistic, _ in tests for test in _named(log, names, statistic)),
+        watched=tuple(watched.tolist()),
+        tick_s=log.period_s,
+        sigma=tuple(_sigma(parts, found, channels).tolist()),
+        summary=told,
+    )
+
+
+def _checked(log: Log) -> Roles:
+    """The columns compared, or what is missing."""
+    found = roles(log)
+    if found.position is None or found.velocity is None:
+        lacks = "position (latitude and longitude)" if found.position is None else "velocity over ground"
+        raise LogError(
+            f"{log.name} has no {lacks}; motion-deficit compares the two: name the columns in vehicle.toml, or take a "
+            "method that needs only the inertial unit."
+        )
+    latitude = log.value[:, found.position[0]]
+    if not (np.abs(latitude[np.isfinite(latitude)]) <= FARTHEST).any():
+        raise LogError(
+            f"{log.name} lies within 0.1 degrees of a pole, where east has no meaning; motion-deficit cannot judge it."
+        )
+    moves = moving(log, found)
+    seconds = len(moves) * float(np.median(np.diff(moves))) if len(moves) > 2 else 0.0
+    if seconds < LEAST_MOVING_S:
+        raise LogError(
+            f"{log.name} moves for {seconds:.0f} s, motion-deficit needs {LEAST_MOVING_S:g} s above {LEAST_SPEED:g} "
+            "m/s to learn what is healthy; give a drive that moves."
+        )
+    return found
+
+
+def _unit(log: Log, found: Roles) -> tuple[Inertial | None, str]:
+    """The inertial unit as it is mounted, or None and why not."""
+    try:
+        return inertial(fit_mounting(log, found), found), ""
+    except LogError as error:
+        return None, str(error)
+
+
+def _parts(
+    log: Log, found: Roles, unit: Inertial | None, repeats: bool
+) -> tuple[tuple[Any, ...], list[Bool[Array, " C"]], list[Test]]:
+    """The residual generators, whom each answers for, and the tests made of them."""
+    assert found.position is not None
+    assert found.velocity is not None
+    channels = len(log.channels)
+    period_s = next(s.period_s for s in log.sensors if s.name == log.channels[found.position[0]].sensor)
+    horizons_s = [max(fast, JITTER * many * period_s) for fast, many in zip(HORIZONS_S, (1, 4), strict=True)]
+    deficit = MotionDeficit(
+        law=jnp.ones((len(horizons_s), 4)),
+        horizon_s=jnp.asarray(horizons_s),
+        spacing_s=jnp.asarray(horizons_s[-1] / (SLOTS - 2)),
+        afresh_s=jnp.asarray(AFRESH_S),
+        inertial=unit,
+        position=found.position,
+        velocity=found.velocity,
+        polar=found.polar,
+        channels=channels,
+        slots=SLOTS,
+    )
+    place = _mask(channels, *found.position)
+    short_s = jnp.asarray(max(SHORT_S, 2 * period_s))
+    tests: list[Test] = [
+        (tuple(f"deficit over {horizon:g} s" for horizon in horizons_s), Of(Deficit(place), 0), 0.0),
+        (("shortfall",), Of(Shortfall(short_s, jnp.asarray(HALF), place, found.position), 0), FLOOR_M),
+    ]
+    if repeats:
+        tests.append((("standing",), Of(Standing(place, found.position), 0), FLOOR_M))
+    parts: tuple[Any, ...] = (fit_deficit(deficit, log),)
+    if unit is None:
+        return parts, [place], tests
+    against = VelocityDeficit(
+        memory_s=jnp.asarray(MEMORY_S),
+        afresh_s=jnp.asarray(LED_S),
+        variance=jnp.ones(2),
+        inertial=unit,
+        velocity=found.velocity,
+        polar=found.polar,
+        channels=channels,
+    )
+    against = fit_velocity(against, log)
+    whole = _mask(channels, *found.velocity)
+    speed, course = (_mask(channels, i) if found.polar else whole for i in found.velocity)
+    tests.append((("slip along", "slip across"), Of(Slippage(jnp.sqrt(against.variance), speed, course), 1), 0.0))
+    return (*parts, against), [place, whole], tests
+
+
+def _named(log: Log, names: tuple[str, ...], of: Of) -> Iterator[tuple[str, str]]:
+    """Each test with the paths of the channels that it accuses."""
+    test = of.statistic
+    masks = [test.along, test.across] if isinstance(test, Slippage) else [test.accused] * len(names)  # type: ignore[attr-defined]
+    for name, mask in zip(names, masks, strict=True):
+        yield name, TOGETHER.join(c.path for c, mine in zip(log.channels, np.asarray(mask), strict=True) if mine)
+
+
+def _presumes_s(of: Of) -> float:
+    """After a slide a velocity that differs from the inertial unit's is no sensor's fault, until it leads that anew."""
+    return LED_S if isinstance(of.statistic, Slippage) else 0.0
+
+
+def _mask(channels: int, *columns: int) -> Bool[Array, " C"]:
+    return jnp.asarray(np.isin(np.arange(channels), columns))
+
+
+def _sigma(parts: tuple[Any, ...], found: Roles, channels: int) -> np.ndarray:
+    """Standard deviation of each healthy residual [SI]; a second after the reference, at 10 m/s."""
+    assert found.position is not None
+    assert found.velocity is not None
+    sigma = np.ones(channels)
+    metres = float(np.sqrt(np.asarray(parts[0].law)[-1] @ [1.0, 1.0, 100.0, 1.0]))
+    sigma[list(found.position)] = metres / SEMI_MAJOR_AXIS
+    for part in parts[1:]:
+        along, across = np.sqrt(np.asarray(part.variance))
+        sigma[list(found.velocity)] = (along, across / 10) if found.polar else np.hypot(along, across)
+    return sigma
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    session.tell("learning how far position and velocity disagree when healthy")
+    return motion_deficit(RECIPE.name, log)
+
+
+RECIPE = Recipe(
+    name="motion-deficit",
+    title="Way that the velocity says minus displacement of the position; velocity against the inertial unit",
+    source="EXPERIMENTS A2; the fault of Min et al. 2021, section 2.2 (jams), found without a network",
+    promise="one false alarm an hour for all its tests together, extrapolated from the tail of the training drive, and "
+    "a quarter on top of each limit",
+    build=_build,
+    needs=_checked,
+)

@@ -1,0 +1,165 @@
+"""A residual of the position made into a monitor: what the predictors and their baselines share."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log, LogError
+from sensorfault.numerics.networks.dense import Linear, Mlp
+from sensorfault.numerics.networks.lstm import Lstm
+from sensorfault.runtime.model import MISSED, Model, hold_s, owners
+from sensorfault.runtime.replay import replay_log
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.rebuild import Rebuild
+from sensorfault.stages.residual.displacement import Displacement
+from sensorfault.stages.residual.extrapolation import Extrapolation
+from sensorfault.stages.residual.prediction import Prediction
+from sensorfault.stages.statistic.norm import Norm
+from sensorfault.stages.threshold.scaled_max import ScaledMax
+from sensorfault.training.prediction import Inputs, prediction_windows
+from sensorfault.training.windows import Windows
+from sensorfault.vehicles.car import Roles, roles
+
+LENGTH = 30  # s of Min et al. 2021: rows of the window
+REBUILD_S = 3.0  # a stand-in is believed for so long
+READMIT_S = 0.5  # a channel is taken at its own word again so long after the last accusation
+GAP = 5.5  # ticks without a row that break a window
+LEAST_FIXES = 50
+LEAST_WAY = 1e-6  # a drive that keeps within this angle never moved [rad], some 6 m
+
+
+@dataclass(frozen=True)
+class Positions:
+    """A healthy log as a predictor of the position sees it."""
+
+    log: Log
+    roles: Roles
+    columns: tuple[int, int]  # latitude, longitude
+    half: Float[np.ndarray, "2"]  # half of their training range [rad]
+    turning: tuple[int, ...]  # columns that are angles without an end
+
+    @classmethod
+    def of(cls, name: str, log: Log) -> "Positions":
+        """For the method of that name.
+
+        Raises:
+            LogError: no positions, too few of them, or a drive that never moves.
+        """
+        found = roles(log)
+        if found.position is None:
+            raise LogError(
+                f"{log.name} has no {found.lacking('latitude', 'longitude')}, which {name} predicts; "
+                "name the columns in vehicle.toml, or take another method."
+            )
+        latitude, longitude = found.position
+        new = log.fresh[:, found.position].all(axis=1) & np.isfinite(log.value[:, found.position]).all(axis=1)
+        if new.sum() < LEAST_FIXES:
+            raise LogError(f"{log.name} has {new.sum()} positions, {name} needs {LEAST_FIXES}; give it more data.")
+        inputs = Inputs.of(log, found.position, 2, (longitude,))
+        if inputs.half.max() < LEAST_WAY / 2:
+            raise LogError(f"{log.name} never moves, which leaves {name} nothing to predict; give a drive that does.")
+        return cls(log, found, (latitude, longitude), inputs.half, (longitude,))
+
+    @property
+    def stale_s(self) -> Float[np.ndarray, " C"]:
+        """How long a channel may be silent before what is remembered of it is void [s]."""
+        period = {sensor.name: sensor.period_s for sensor in self.log.sensors}
+        own = np.array([period[channel.sensor] for channel in self.log.channels])
+        return np.maximum(MISSED * own, GAP * self.log.period_s) + self.log.period_s / 2
+
+    @property
+    def inputs(self) -> tuple[int, ...]:
+        """V = (lat, lon, ω, a): the columns that a network sees, as far as the log has them."""
+        return (*self.columns, *(self.roles.gyro or ()), *(self.roles.accelerometer or ()))
+
+    def mark(self, columns: tuple[int, ...]) -> Bool[np.ndarray, " C"]:
+        """True for these columns."""
+        marked: Bool[np.ndarray, " C"] = np.isin(np.arange(len(self.log.channels)), columns)
+        return marked
+
+
+def from_windows(name: str, log: Log, length: int, fit: Callable[[Windows], Linear | Mlp | Lstm]) -> Model:
+    """The monitor of a network that predicts the position from the `length` rows before, fitted on a healthy log.
+
+    Raises:
+        LogError: a log without positions, with too few of them, or that never moves.
+    """
+    positions = Positions.of(name, log)
+    inputs = Inputs.of(log, positions.inputs, 2, positions.turning)
+    gap_s = GAP * log.period_s
+    stale_s = positions.stale_s[list(positions.columns)]
+    network = fit(prediction_windows(log, inputs, length, gap_s, stale_s))
+    residual = Prediction(
+        network=network,
+        center=jnp.asarray(inputs.center),
+        half=jnp.asarray(inputs.half),
+        angle=jnp.asarray(inputs.angle),
+        cov=jnp.eye(len(log.channels)),
+        gap_s=jnp.asarray(gap_s),
+        stale_s=jnp.asarray(stale_s),
+        length=length,
+        inputs=inputs.columns,
+    )
+    return limited(name, positions, residual, {"inputs": [log.channels[i].path for i in inputs.columns]})
+
+
+def limited(
+    name: str,
+    positions: Positions,
+    residual: Prediction | Extrapolation | Displacement,
+    told: dict[str, Any],
+    unit: Float[np.ndarray, "2"] | None = None,
+) -> Model:
+    """The model: covariance and largest error from a replay with the limit off.
+
+    Errors are counted in `unit` [rad], of latitude and longitude; by default in halves of the training range.
+
+    Raises:
+        LogError: too few positions that can be tested.
+    """
+    log, columns = positions.log, list(positions.columns)
+    channels = len(log.channels)
+    scale = np.ones(channels)
+    scale[columns] = positions.half if unit is None else unit
+    deaf = Monitor(
+        residual=residual,
+        branches=(Branch(Norm(jnp.asarray(scale)), ScaledMax(jnp.full(1, jnp.inf))),),
+        decision=Exceed(),
+        recovery=Rebuild(jnp.asarray(REBUILD_S), jnp.asarray(READMIT_S), channels),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+        most=1,
+    )
+    tape = replay_log(deaf, log)
+    tested = np.asarray(tape.valid)[:, columns].all(axis=1)
+    if tested.sum() < LEAST_FIXES:
+        raise LogError(
+            f"{log.name} has {tested.sum()} positions with an unbroken window before them, {name} needs {LEAST_FIXES}; "
+            "give it more data, or data with fewer gaps."
+        )
+    cov = np.eye(channels)
+    at = np.array(columns)
+    cov[at[:, None], at] = np.cov(np.asarray(tape.residual)[tested][:, columns].T)
+    # (10) max(err), of the 2-norm (13)-(15) over the training data
+    largest = np.nanmax(tape.scores[0], axis=0)
+    monitor = eqx.tree_at(
+        lambda m: (m.residual.cov, m.branches[0].threshold.largest), deaf, (jnp.asarray(cov), jnp.asarray(largest))
+    )
+    watched = positions.mark(positions.columns)
+    reasons = {c.path: "not predicted" for c, w in zip(log.channels, watched, strict=True) if not w}
+    summary = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "rows": int(tested.sum()),
+        "not_watched": reasons,
+        **told,
+    }
+    sigma = tuple(np.sqrt(np.diag(cov)).tolist())
+    tests = (("norm", None),)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, summary)

@@ -1,0 +1,73 @@
+"""How far off is each range, as fuzzy rules foretell it from what an adaptive cubature filter makes of it."""
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from sensorfault.core.monitor import Branch
+from sensorfault.logs.table import Log
+from sensorfault.methods.ranging.range_filter import (
+    GROWTH,
+    WRONG,
+    Filter,
+    cubature,
+    fitted,
+    followed,
+    model,
+    monitor,
+    on_ranges,
+)
+from sensorfault.methods.ranging.ranges_learned import learned, lessons, widest
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.stages.statistic.fuzzy_inference import FuzzyInference
+from sensorfault.training.fuzzy import Setting, fit_anfis
+from sensorfault.training.labelled import Labelled
+from sensorfault.training.session import Session
+from sensorfault.vehicles.underwater import FollowerRoles
+
+RULES = Setting()
+
+
+def anfis(
+    name: str,
+    log: Log,
+    found: FollowerRoles,
+    filter: Filter,
+    labelled: Sequence[Labelled],
+    rmse: bool,
+    setting: Setting = RULES,
+) -> Model:
+    """With rules learned from these ranges, one set a leader. T2 is 3 RMSE of the training, else that of an anomaly."""
+    fits = [fit_anfis(*of_leader, setting) for of_leader in labelled]
+    limits = np.array([3 * fit.rmse for fit in fits]) if rmse else np.full(len(fits), WRONG * filter.sigma_m)
+    columns = tuple(leader.range for leader in found.leaders)
+    test = FuzzyInference(tuple(fit.model for fit in fits), widest(labelled), columns)
+    heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, limits)))
+    told = {"rmse_m": [fit.rmse for fit in fits], "limits_m": limits.tolist()}
+    return model(name, log, found, heard, ("foretold error",), filter, told)
+
+
+def _recipe(rmse: bool) -> Recipe:
+    name = "anfis-cubature" if rmse else "anfis-cubature-9m"
+
+    def build(log: Log, seed: int, session: Session) -> Model:
+        found = followed(name, log)
+        session.tell("fitting the noise of ranges and dead reckoning")
+        own = fitted(log, found, Filter(growth=GROWTH))
+        session.tell("learning rules")
+        return anfis(name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)), rmse)
+
+    limit = "3 times the training's RMSE" if rmse else "3 standard deviations of a range, 9 m of 3 m"
+    return Recipe(
+        name=name,
+        title=f"ANFIS of an adaptive cubature filter's innovation, its distance and R*; limit: {limit}",
+        source="Xu et al. 2023, (1)-(35)" if rmse else "Xu et al. 2023 with its limit T1 in the place of T2",
+        promise="none",
+        build=build,
+        needs=partial(followed, name),
+    )
+
+
+RECIPES = (_recipe(True), _recipe(False))

@@ -1,0 +1,76 @@
+"""Which of a follower's leaders lies: the recipe we stand for."""
+
+from functools import partial
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.calibration.limits import repeat_limit
+from sensorfault.calibration.open_loop import score_tape
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log
+from sensorfault.methods.ranging.chi_square_cubature import limit
+from sensorfault.methods.ranging.range_filter import (
+    GROWTH,
+    Filter,
+    cubature,
+    fitted,
+    followed,
+    model,
+    monitor,
+    on_ranges,
+)
+from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime.model import Model
+from sensorfault.stages.residual.cubature import Cubature
+from sensorfault.stages.statistic.normalised import Normalised
+from sensorfault.stages.statistic.repeats import Repeats
+from sensorfault.training.session import Session
+from sensorfault.vehicles.underwater import FollowerRoles
+
+FALSE_ALARMS = 0.01  # of the healthy ranges
+LEAST_RUN = 5.0  # repeats that are no jam yet
+REPEATED = 1e6
+
+
+def cooperative(name: str, log: Log, filter: Filter | None = None) -> Model:
+    """Fit the noises on a healthy log, unless the filter is given.
+
+    Raises:
+        LogError: not a follower's log.
+    """
+    found = followed(name, log)
+    own = filter or fitted(log, found, Filter(growth=GROWTH, repeated=REPEATED))
+    heard, longest = gates(log, found, cubature(log, found, own))
+    told = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
+    return model(name, log, found, heard, ("chi-square", "repeats"), own, told)
+
+
+def gates(log: Log, found: FollowerRoles, residual: Cubature) -> tuple[Monitor, Float[np.ndarray, " L"]]:
+    """The filter behind both tests, and the longest run of repeats that each leader of this healthy log is allowed."""
+    repeats = Repeats(len(log.channels))
+    runs = score_tape(monitor(log, residual, Branch(repeats, on_ranges(log, found, np.inf))), log)[0]
+    columns = [leader.range for leader in found.leaders]
+    longest = np.maximum(repeat_limit(runs, log.period_s)[columns], LEAST_RUN)
+    heard = monitor(
+        log,
+        residual,
+        Branch(Normalised(), on_ranges(log, found, limit(FALSE_ALARMS))),
+        Branch(repeats, on_ranges(log, found, longest), certain=True),
+    )
+    return heard, longest
+
+
+def _build(log: Log, seed: int, session: Session) -> Model:
+    session.tell("fitting the noise of ranges and dead reckoning")
+    return cooperative(RECIPE.name, log)
+
+
+RECIPE = Recipe(
+    name="cooperative",
+    title="Adaptive cubature filter of a follower that takes no exact repeat for news: χ² of each range, and repeats",
+    source="Xu et al. 2023, (1)-(20), (30), (31), with noises fitted to the log; no rules, which gain nothing on it",
+    promise="0.01 of the healthy ranges, if the noise is Gaussian",
+    build=_build,
+    needs=partial(followed, "cooperative"),
+)

@@ -1,0 +1,154 @@
+"""What the methods share that judge a follower's ranges: the filter and the monitor around it."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.table import Log, LogError
+from sensorfault.runtime.model import MISSED, Model, hold_s, owners
+from sensorfault.runtime.replay import replay_log
+from sensorfault.stages.decision.exceed import Exceed
+from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.residual.cubature import Cubature
+from sensorfault.stages.residual.measurement_noise import Stated
+from sensorfault.stages.statistic.normalised import Normalised
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault.training.cubature import likeliest
+from sensorfault.training.ranges import submerged
+from sensorfault.vehicles.underwater import Follower, FollowerRoles, roles
+
+START_M = 2.0  # standard deviation of the first fix, north and east [m]
+LEAST = 40  # ranges of each leader
+GROWTH = 0.5  # of the recipes; none as printed
+WRONG = 3.0  # a range further off than so many of its standard deviations is anomalous: 9 m of 3 m
+
+
+@dataclass(frozen=True)
+class Filter:
+    """What the filter takes for granted.
+
+    `q`: variance that a second of dead reckoning adds [m²/s], 1 as printed. `sigma_m`: standard deviation of a range
+    [m]. `adaptive`: R* for R. `growth`: share by which each refused range makes q larger. `repeated`: how many times R
+    is that of an exact repeat.
+    """
+
+    q: float = 1.0
+    sigma_m: float = 3.0
+    adaptive: bool = True
+    growth: float = 0.0
+    repeated: float = 1.0
+
+
+def followed(name: str, log: Log) -> FollowerRoles:
+    """What the log says of a follower.
+
+    Raises:
+        LogError: no leader, no position to begin at, or too few ranges.
+    """
+    found = roles(log)
+    if not found.leaders:
+        raise LogError(
+            f"{log.name} has no sensor with a range [m] and a position, {name} needs one a leader; name the columns in "
+            "vehicle.toml, or take another method."
+        )
+    if not found.position or not log.fresh[:, list(found.position)].all(axis=1).any():
+        raise LogError(
+            f"{log.name} has no position of a sensor without a range, {name} begins at one; give a log with a fix."
+        )
+    few = min(int(log.fresh[:, leader.range].sum()) for leader in found.leaders)
+    if few < LEAST:
+        raise LogError(f"{log.name} has a leader with {few} ranges, {name} needs {LEAST}; give it a longer log.")
+    return found
+
+
+def cubature(log: Log, found: FollowerRoles, filter: Filter) -> Cubature:
+    """The filter of this log's follower."""
+    return _cubature(log, found, filter, jnp.asarray(filter.q), jnp.asarray(filter.sigma_m))
+
+
+def _cubature(
+    log: Log, found: FollowerRoles, filter: Filter, q: Float[Array, ""], sigma_m: Float[Array, ""]
+) -> Cubature:
+    period = {sensor.name: sensor.period_s for sensor in log.sensors}
+    return Cubature(
+        vehicle=Follower(q, jnp.asarray(START_M), found),
+        r=sigma_m**2 * jnp.ones(len(found.leaders)),
+        noise=Stated(filter.adaptive),
+        growth=jnp.asarray(filter.growth),
+        repeated=jnp.asarray(filter.repeated),
+        stale_s=jnp.asarray(MISSED * max(period[log.channels[leader.range].sensor] for leader in found.leaders)),
+        channels=len(log.channels),
+        states=2,
+    )
+
+
+def monitor(log: Log, residual: Cubature, *branches: Branch) -> Monitor:
+    """What is over a limit has gain 0; without branches, with the limits off."""
+    silent = Branch(Normalised(), Fixed(jnp.inf * jnp.ones(len(log.channels))))  # not full: that is weakly typed
+    return Monitor(
+        residual=residual,
+        branches=branches or (silent,),
+        decision=Exceed(),
+        recovery=Drop(),
+        hold_s=jnp.asarray(hold_s(log)),
+        owner=owners(log.channels, log.sensors),
+    )
+
+
+def on_ranges(log: Log, found: FollowerRoles, limits: float | Float[np.ndarray, " L"]) -> Fixed:
+    """These limits on the ranges, one or one a leader, and none on the other channels."""
+    limit = np.full(len(log.channels), np.inf)
+    limit[[leader.range for leader in found.leaders]] = limits
+    return Fixed(jnp.asarray(limit))
+
+
+def fitted(log: Log, found: FollowerRoles, filter: Filter) -> Filter:
+    """The filter with the noise that makes the innovations of this log likeliest; exact repeats say nothing of it."""
+    plain = replace(filter, adaptive=True, growth=0.0, repeated=1e6)
+    under = submerged(log, found.position)
+    q, sigma_m = likeliest(lambda q, sigma: monitor(log, _cubature(log, found, plain, q, sigma)), under)
+    return replace(filter, q=q, sigma_m=sigma_m)
+
+
+def model(
+    name: str,
+    log: Log,
+    found: FollowerRoles,
+    own: Monitor,
+    tests: tuple[str, ...],
+    filter: Filter,
+    told: dict[str, Any],
+) -> Model:
+    """`tests` names what each branch tests of each channel; `sigma` is that of the healthy innovations."""
+    ranges = [leader.range for leader in found.leaders]
+    deaf = monitor(log, own.residual)  # type: ignore[arg-type]
+    tape = replay_log(deaf, submerged(log, found.position))
+    sigma = np.ones(len(log.channels))
+    for column in ranges:
+        seen = tape.residual[tape.valid[:, column], column]
+        sigma[column] = 1.4826 * np.median(np.abs(seen))  # robust: the log may have its wild ones
+    paths = [channel.path for channel in log.channels]
+    mine = np.isin(np.arange(len(paths)), ranges)
+    summary = {
+        "training_log": log.name,
+        "training_s": log.duration_s,
+        "process_noise_m2_s": filter.q,
+        "range_sigma_m": filter.sigma_m,
+        **told,
+        "not_watched": {path: "not measured" for path, m in zip(paths, mine, strict=True) if not m},
+    }
+    return Model(
+        method=name,
+        monitor=own,
+        channels=log.channels,
+        sensors=log.sensors,
+        tests=tuple((test, path) for test in tests for path in paths),
+        watched=tuple(mine.tolist()),
+        tick_s=log.period_s,
+        sigma=tuple(sigma.tolist()),
+        summary=summary,
+    )

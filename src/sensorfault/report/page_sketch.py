@@ -1,0 +1,115 @@
+"""What is drawn of a log: few points of each line, the runs of each verdict. Of a long log gathered part by part."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.events.event import Event
+from sensorfault.logs.table import Log
+from sensorfault.logs.units import from_si
+from sensorfault.report.page_lines import Span, near
+from sensorfault.report.page_strokes import Drawn, Lane, Tested
+from sensorfault.runtime.result import Detection
+
+POINTS = 300_000  # all lines together, and at most as many again around the events: 3 to 7 MB
+BANDS = 1500  # of a sensor's verdicts
+MOTION, NAMELESS = "vehicle motion", "unknown which"  # where no sensor is named
+
+
+class Sketch:
+    """A detection as a page draws it. `log` is its first part, for names and notes; `rows` and `end_s` are of all."""
+
+    def __init__(self, first: Detection) -> None:
+        self.log, self.method, self.watched = first.log, first.method, first.watched
+        self.rows = 0
+        self.start_s = self.end_s = float(first.log.time[0]) if len(first.log) else 0.0
+        self.period_s = first.log.period_s
+        self.events: tuple[Event, ...] = ()
+        self.channels = [Drawn() for _ in first.log.channels]
+        self.tests: dict[tuple[str, str | None], Tested] = {}
+        self._lanes = {name: Lane() for name in (*(s.name for s in first.log.sensors), NAMELESS, MOTION)}
+        self._nameless = self._motion = False
+
+    @classmethod
+    def of(cls, detection: Detection) -> "Sketch":
+        """Of a log as a whole."""
+        sketch = cls(detection)
+        sketch.take(detection)
+        return sketch
+
+    @property
+    def span(self) -> Span:
+        """The time from the first tick to the last, never empty [s]."""
+        if self.end_s > self.start_s:
+            return self.start_s, self.end_s
+        return (self.start_s - 0.5, self.start_s + 0.5) if self.rows else (0.0, 1.0)
+
+    @property
+    def lanes(self) -> list[tuple[str, Lane]]:
+        """Of every sensor; of the whole, where it was faulty and nobody could be named; of the motion."""
+        shown = {NAMELESS: self._nameless, MOTION: self._motion}
+        return [(name, lane) for name, lane in self._lanes.items() if shown.get(name, True)]
+
+    def take(self, part: Detection, share: float = 1.0) -> None:
+        """The next part, `share` of the whole, and all events so far."""
+        self.rows, self.events = self.rows + len(part.log), part.events
+        if not len(part.log):
+            return
+        self.end_s = float(part.log.time[-1])
+        lines = len(part.log.channels) + len(part.traces)
+        points = max(8, round(share * max(1000, POINTS // max(1, lines))))
+        keep = near(part.log.time, self._spans(part.log), points)
+        for column, drawn in enumerate(self.channels):
+            self._draw(drawn, part, column, keep, points)
+        for trace in part.traces:
+            test = self.tests.setdefault((trace.name, trace.channel), Tested(trace))
+            test.add(part.log.time, trace, keep, points)
+        self._judge(part, max(8, round(share * BANDS)))
+
+    def _spans(self, log: Log) -> list[Span]:
+        """The events that this part has a share in, or that have just ended."""
+        first, last = float(log.time[0]), float(log.time[-1])
+        spans = [(event.start_s, last if event.end_s is None else event.end_s) for event in self.events]
+        return [span for span in spans if span[1] >= first - 2 and span[0] <= last + 2]
+
+    def _draw(self, drawn: Drawn, part: Detection, column: int, keep: Bool[np.ndarray, " T"], points: int) -> None:
+        log, unit = part.log, part.log.channels[column].unit
+        value, old = from_si(log.value[:, column], unit), stale(log, column, drawn.fresh_s)
+        drawn.said.add(log.time, np.where(old, np.nan, value), keep, points)
+        drawn.held.add(log.time, np.where(old, value, np.nan), keep, points)
+        drawn.stand_in.add(log.time, from_si(replaced(part, column), unit), keep, points)
+        at = log.time[log.fresh[:, column]]
+        drawn.fresh_s = float(at[-1]) if at.size else drawn.fresh_s
+
+    def _judge(self, part: Detection, most: int) -> None:
+        time = part.log.time
+        for i, sensor in enumerate(part.log.sensors):
+            self._lanes[sensor.name].add(time, part.sensor[:, i], most)
+        nameless = (part.sample == FAULT) & (part.sensor.max(axis=1, initial=OK) < FAULT)
+        self._lanes[NAMELESS].add(time, np.where(nameless, FAULT, OK).astype(np.int8), most)
+        self._lanes[MOTION].add(time, part.motion, most)
+        self._nameless |= bool(nameless.any())
+        self._motion |= bool((part.motion != UNKNOWN).any())
+
+
+def stale(log: Log, column: int, fresh_s: float = -np.inf) -> Bool[np.ndarray, " T"]:
+    """Where a value is held for longer than the sensor's own period: the last measurement, said again and again.
+
+    `fresh_s`: when the last measurement before this part came.
+    """
+    fresh = log.fresh[:, column]
+    last: Float[np.ndarray, " T"] = np.maximum.accumulate(np.where(fresh, log.time, fresh_s))
+    period = next(s.period_s for s in log.sensors if s.name == log.channels[column].sensor)
+    held: Bool[np.ndarray, " T"] = ~fresh & (log.time - last > 2.5 * np.fmax(period, log.period_s))
+    return held
+
+
+def replaced(detection: Detection, column: int) -> Float[np.ndarray, " T"]:
+    """The stand-in where the channel was faulty or silent, with one sample either side to tie it to the signal."""
+    value, repaired = detection.log.value[:, column], detection.repaired[:, column]
+    mask = (detection.channel[:, column] == FAULT) | (~np.isfinite(value) & np.isfinite(repaired))
+    wide = mask.copy()
+    wide[:-1] |= mask[1:]
+    wide[1:] |= mask[:-1]
+    stand_in: Float[np.ndarray, " T"] = np.where(wide, repaired, np.nan)
+    return stand_in

@@ -1,0 +1,156 @@
+"""The words and tables of the report page, as HTML. Everything that comes from a file is escaped here."""
+
+from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
+from html import escape
+
+from sensorfault.events.event import Event
+from sensorfault.faults.fault import Fault
+from sensorfault.report.page_sketch import MOTION, NAMELESS, Sketch
+
+GAP = "all (gap in the log)"
+SILENCE_ONLY = "only its silence is noticed"
+
+
+def clock(seconds: float) -> str:
+    """[s] -> m:ss.ss, from an hour on h:mm:ss.ss."""
+    hundredths = round(abs(seconds) * 100)
+    minutes, rest = divmod(hundredths, 6000)
+    hours, minutes = divmod(minutes, 60)
+    text = f"{hours}:{minutes:02d}:{rest / 100:05.2f}" if hours else f"{minutes}:{rest / 100:05.2f}"
+    return f"−{text}" if seconds < 0 else text
+
+
+def number(value: float | None) -> str:
+    """Three digits, or a dash where there is nothing to say."""
+    return "–" if value is None else f"{value:.3g}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number or 'no'} {what}{'' if number == 1 else 's'}"
+
+
+def result(sketch: Sketch) -> str:
+    """The finding in one sentence."""
+    kinds = [_accused(event) for event in sketch.events]
+    named = {e.sensor for e in sketch.events if e.sensor is not None and e.subject == "sensor"}
+    faults = sum(accused not in (MOTION, GAP) for accused in kinds)
+    text = _count(faults, "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
+    if NAMELESS in kinds:
+        text += f", {kinds.count(NAMELESS)} of them not laid to one sensor"
+    if MOTION in kinds:
+        text += f", {_count(kinds.count(MOTION), 'implausible motion')}"
+    if GAP in kinds:
+        text += f", {_count(kinds.count(GAP), 'gap')} in the log"
+    unjudged = blind(sketch)
+    text += f"; {_count(len(sketch.log.sensors) - len(unjudged), 'sensor')} watched"
+    if unjudged:
+        silence = SILENCE_ONLY if len(unjudged) == 1 else SILENCE_ONLY.replace("its", "their")
+        text += f", {', '.join(unjudged)} not judged ({silence})"
+    return escape(text[0].upper() + text[1:] + ".")
+
+
+def blind(sketch: Sketch) -> list[str]:
+    """Sensors of which no channel is judged."""
+    judged = {c.sensor for c, watched in zip(sketch.log.channels, sketch.watched, strict=True) if watched}
+    return [sensor.name for sensor in sketch.log.sensors if sensor.name not in judged]
+
+
+def _accused(event: Event) -> str:
+    if event.subject == "motion":
+        return MOTION
+    return event.sensor or (GAP if event.kind == "miss" else NAMELESS)
+
+
+def facts(sketch: Sketch) -> str:
+    """Duration, rate, size, start and method in one line."""
+    log, rows = sketch.log, sketch.rows
+    items = [f"duration {clock(sketch.end_s - sketch.start_s)}", f"{rows:,} sample{'' if rows == 1 else 's'}"]
+    if rows > 1:
+        items[-1] += f" at {1 / sketch.period_s:.3g} Hz"
+    items += [_count(len(log.sensors), "sensor"), _count(len(log.channels), "channel")]
+    if log.epoch_s is not None:
+        items.append(f"from {datetime.fromtimestamp(log.epoch_s, UTC):%Y-%m-%d %H:%M:%S} UTC")
+    return escape(" · ".join([*items, f"method {sketch.method}"]))
+
+
+def sentences(heading: str, lines: Sequence[str]) -> str:
+    """A short list under a heading, or nothing."""
+    if not lines:
+        return ""
+    return f"<h3>{escape(heading)}</h3><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>"
+
+
+def match(fault: Fault, events: Iterable[Event]) -> Event | None:
+    """The event that names the fault's sensor while the fault lasts; of several, the most alike.
+
+    For display only; no measure of merit.
+    """
+    same = [
+        e
+        for e in events
+        if e.sensor == fault.sensor and e.start_s <= fault.end_s and (e.end_s is None or e.end_s >= fault.start_s)
+    ]
+    return max(same, key=lambda e: (e.channel == fault.channel) + (e.kind == fault.kind), default=None)
+
+
+def found(fault: Fault, events: Iterable[Event]) -> bool:
+    """Whether there is such an event."""
+    return match(fault, events) is not None
+
+
+def _outcome(fault: Fault, event: Event | None) -> str:
+    """What became of an injected fault; the event's own words where they differ from the truth."""
+    if event is None:
+        return "missed"
+    if (event.channel, event.kind) == (fault.channel, fault.kind):
+        return "found"
+    return f"found as {event.kind} of {event.channel or 'all'}"
+
+
+def _row(start_s: float, end_s: float | None, log_end_s: float, cells: Sequence[str], tone: str = "") -> str:
+    """A row that zooms the plots to its time; `cells` are escaped here."""
+    last = log_end_s if end_s is None else end_s
+    times = [_time(start_s), "lasts" if end_s is None else _time(end_s)]
+    body = "".join(f'<td class="time">{cell}</td>' for cell in times) + "".join(f"<td>{escape(c)}</td>" for c in cells)
+    return f'<tr tabindex="0" data-from="{start_s:.6f}" data-to="{last:.6f}" class="{tone}">{body}</tr>'
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.2f} s <small>{clock(seconds)}</small>"
+
+
+def _table(heads: Sequence[str], rows: Sequence[str]) -> str:
+    head = "".join(f"<th>{escape(h)}</th>" for h in heads)
+    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'
+
+
+def event_table(sketch: Sketch) -> str:
+    """All events, numbered as in the plots."""
+    if not sketch.events:
+        return '<p class="none">No fault was found.</p>'
+    end = sketch.end_s
+    rows = []
+    for i, e in enumerate(sketch.events, 1):
+        against = "–" if e.peak_score is None else f"{number(e.peak_score)} / {number(e.limit)}"
+        against += " s silent" if e.kind == "miss" and e.peak_score is not None else ""
+        row = _row(e.start_s, e.end_s, end, (_accused(e), e.channel or "–", e.kind, against, e.method))
+        rows.append(row.replace("<td", f"<td>{i}</td><td", 1))
+    return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
+
+
+def truth_table(sketch: Sketch, truth: Sequence[Fault]) -> str:
+    """All injected faults, found or missed, or nothing where none was injected."""
+    if not truth:
+        return ""
+    end = sketch.end_s
+    rows, hits = [], 0
+    for fault in sorted(truth, key=lambda f: f.start_s):
+        event = match(fault, sketch.events)
+        hits += event is not None
+        size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in ("jam", "miss") else "–"
+        cells = (fault.sensor, fault.channel or "all", fault.kind, size, _outcome(fault, event))
+        rows.append(_row(fault.start_s, fault.end_s, end, cells, "missed" if event is None else "hit"))
+    text = f"{hits} of {len(truth)} found, counting any event on the same sensor that overlaps."
+    heads = ("start", "end", "sensor", "channel", "kind", "magnitude", "")
+    return f"<h2>Injected faults</h2><p>{text}</p>{_table(heads, rows)}"

@@ -1,0 +1,106 @@
+"""A model and a log: verdicts and fault events, from a file or live."""
+
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.core.types import FAULT
+from sensorfault.events.event import Event
+from sensorfault.logs.epochs import Gather
+from sensorfault.logs.table import Log
+from sensorfault.runtime.extractor import Follower, watch_of
+from sensorfault.runtime.model import Model
+from sensorfault.runtime.replay import Progress, replay_log
+from sensorfault.runtime.result import Detection, detected
+from sensorfault.runtime.runners import Now, Stepper, nothing_yet
+from sensorfault.runtime.tracker import Tracker
+
+
+def detect(model: Model, log: Log, progress: Progress | None = None) -> Detection:
+    """Replay a log through a fitted monitor, from a fresh start.
+
+    Raises:
+        LogError: the log lacks a channel of the model, or ticks at another rate.
+    """
+    log = model.take(log)
+    told = replay_log(model.monitor, log, progress)
+    follower = Follower(model)
+    follower.take(log, told)
+    return detected(model, log, told, follower.events)
+
+
+class Live:
+    """A fitted model on a vehicle: one sample in, one verdict out, events as they end.
+
+    >>> live = Live(model)
+    >>> now = live.push(0.02, [0.01, 0.0, 0.12, 0.3, -0.1, 9.8])
+    >>> now.sample  # 0 ok, 1 unknown, 2 fault
+
+    `events` are those that have ended; `open()` those that go on.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.events: list[Event] = []
+        framing = model.framing
+        self._gather = Gather(framing) if framing else None
+        self._step = Stepper(model.monitor, framing.nothing if framing else ())
+        self._watch = watch_of(model)
+        self._tracker = Tracker(self._watch)
+        held = {sensor.name: sensor.held for sensor in model.sensors}
+        names = [channel.sensor for channel in model.channels]
+        self._held = [np.flatnonzero([n == name for n in names]) for name in held if held[name]]
+        self._fresh: Bool[np.ndarray, " C"] = np.ones(len(model.inputs), bool)
+        self._last: Float[np.ndarray, " C"] = np.full(len(model.inputs), np.nan)
+        self._now = nothing_yet(model.monitor)
+        self._begun = False
+        self._time: float | None = None
+        self._epoch: float | None = None  # when the last one ended
+
+    def push(self, time: float, value: Any, fresh: Any = None) -> Now:
+        """Judge one sample: `time` [s], rising; `value` in SI in the order of `model.inputs`, NaN if absent.
+
+        `fresh` marks new measurements; left out, a held sensor is new when one of its channels has changed. Where the
+        model judges epochs, a sample that ends none is answered with what was said of the last.
+
+        Raises:
+            ValueError: time did not rise, or the number of values is not that of the model's channels.
+        """
+        if len(value) != len(self._fresh):
+            width = len(self._fresh)
+            raise ValueError(f"live: {len(value)} values for {width} channels; push one for each, NaN if absent.")
+        if not (self._time is None or time > self._time):
+            raise ValueError(f"live: time went from {self._time} to {time} s; push samples in order, each once.")
+        if fresh is None:
+            fresh = self._fresh if not self._held else self._changed(np.asarray(value, float))
+        before, self._time = self._time, float(time)
+        gap_s = 0.0 if before is None else self._time - before
+        if self._gather is None:
+            return self._judge(self._time, gap_s, np.asarray(value, float), fresh)
+        cut = self._gather.push(self._time, np.asarray(value, float), np.broadcast_to(fresh, len(value)))
+        if cut is None:
+            return self._now
+        gap_s, self._epoch = (0.0 if self._epoch is None else self._time - self._epoch), self._time
+        block = type(cut.epoch)(*(array[0] for array in cut.epoch))
+        self._now = self._judge(self._time, gap_s, cut.value[0], cut.fresh[0], block)
+        return self._now
+
+    def _judge(self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()) -> Now:
+        now = self._step.push(time, value, fresh, block)
+        # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
+        silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()
+        if FAULT in (now.sample, now.motion) or silent or not self._begun or self._tracker.busy():
+            self._begun = True
+            self.events += self._tracker.push(time, gap_s, value, now)
+        return now
+
+    def open(self) -> list[Event]:
+        """Events that go on; their end_s is None."""
+        return self._tracker.open()
+
+    def _changed(self, value: Float[np.ndarray, " C"]) -> Bool[np.ndarray, " C"]:
+        fresh = self._fresh.copy()
+        for channels in self._held:
+            fresh[channels] = (value[channels] != self._last[channels]).any()
+        self._last = np.where(np.isfinite(value), value, self._last)
+        return fresh

@@ -1,0 +1,78 @@
+"""What a replay says of a log, or of one part of it after the other, as fault events."""
+
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.core.types import FAULT
+from sensorfault.events.event import Event
+from sensorfault.logs.table import Log
+from sensorfault.runtime.model import MOTION, TOGETHER, Model
+from sensorfault.runtime.replay import Replayed
+from sensorfault.runtime.runners import Now
+from sensorfault.runtime.tracker import QUIET_S, Tracker, Watch
+
+
+def watch_of(model: Model) -> Watch:
+    """What a tracker must know of a model."""
+    paths = [channel.path for channel in model.channels]
+    return Watch(
+        model.method,
+        tuple(channel.sensor for channel in model.channels),
+        tuple(channel.name for channel in model.channels),
+        model.period_s,
+        model.silent_after_s,
+        np.asarray(model.sigma),
+        tuple(_examined(path, paths) for _, path in model.tests),
+        model.tick_s,
+    )
+
+
+def _examined(path: str | None, paths: list[str]) -> tuple[int, ...] | str | None:
+    return path if path is None or path == MOTION else tuple(paths.index(one) for one in path.split(TOGETHER))
+
+
+class Follower:
+    """Gathers the events of consecutive parts of one log."""
+
+    def __init__(self, model: Model) -> None:
+        self._watch = watch_of(model)
+        self._tracker = Tracker(self._watch)
+        self._ended: list[Event] = []
+        self._before_s = float("nan")  # the last row of the part before
+        self._marked_s = -np.inf
+
+    @property
+    def events(self) -> list[Event]:
+        """All so far; those that go on have no end."""
+        return sorted(self._ended + self._tracker.open(), key=lambda event: event.start_s)
+
+    def take(self, log: Log, told: Replayed) -> None:
+        """A part with at least one row, and what was said of it."""
+        first = float(log.time[0])
+        gap_s = np.diff(log.time, prepend=first if np.isnan(self._before_s) else self._before_s)
+        self._before_s = float(log.time[-1])
+        silent = (gap_s > self._watch.hole_s) | (np.asarray(told.silence) > self._watch.silent_after_s).any(axis=1)
+        marked = (np.asarray(told.sample) == FAULT) | (np.asarray(told.motion) == FAULT) | silent
+        arrays = _arrays(told)
+        for i in self._interesting(log.time, marked):
+            now = Now(*(array[i] for array in arrays))
+            self._ended += self._tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
+
+    def _interesting(self, time: Float[np.ndarray, " T"], marked: Bool[np.ndarray, " T"]) -> Any:
+        """Rows a tracker must see: the first, the marked ones, those for QUIET_S after, and the one that ends them."""
+        last = np.maximum(np.maximum.accumulate(np.where(marked, time, -np.inf)), self._marked_s)
+        self._marked_s = float(last[-1])
+        near = time - last <= QUIET_S
+        near[1:] |= near[:-1]
+        near[0] = True
+        return np.flatnonzero(near)
+
+
+def _arrays(told: Replayed) -> list[Any]:
+    """What a `Now` holds, stacked over time."""
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
+    verdicts = told.channel, told.sensor, told.sample, told.motion
+    rest = told.value, told.residual, told.valid, told.silence
+    return [np.asarray(column) for column in (*verdicts, score, limit, *rest)]

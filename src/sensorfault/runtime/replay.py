@@ -1,0 +1,117 @@
+"""A whole log through a monitor, chunk by chunk: one compilation for every length, bounded memory, progress."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import sensorfault.core._jax  # isort: skip  # noqa: F401
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Bool, Float, Int8
+
+from sensorfault.core.monitor import Monitor, MonitorState
+from sensorfault.core.types import Report, Sample
+from sensorfault.logs.table import Log, LogError
+from sensorfault.numerics.packing import pack, unpack
+from sensorfault.runtime.runners import samples
+
+CHUNK = 8192
+EPOCHS = 512  # of a log with a block, whose rows are long and few
+
+Progress = Callable[[float], None]
+Numbers = np.ndarray | Array  # on the device while it runs, NumPy afterwards
+
+
+class Replayed(NamedTuple):
+    """What a replay keeps of every sample, stacked over time. Scores are NaN where a test had nothing to test."""
+
+    channel: Int8[Numbers, "T C"]
+    sensor: Int8[Numbers, "T S"]
+    sample: Int8[Numbers, " T"]
+    motion: Int8[Numbers, " T"]
+    scores: tuple[Float[Numbers, "T K"], ...]
+    limits: tuple[Float[Numbers, "T K"], ...]
+    residual: Float[Numbers, "T C"]
+    valid: Bool[Numbers, "T C"]
+    value: Float[Numbers, "T C"]  # measured, or its stand-in [SI]
+    believed: Bool[Numbers, "T C"]  # whether `value` may be believed
+    silence: Float[Numbers, "T C"]
+
+
+def _keep(report: Report) -> Replayed:
+    return Replayed(
+        report.verdict.channel,
+        report.verdict.sensor,
+        report.verdict.sample,
+        report.verdict.motion,
+        tuple(jnp.where(score.valid, score.value, jnp.nan) for score in report.scores),
+        report.limits,
+        report.residual.value,
+        report.residual.valid,
+        report.trust.value,
+        report.trust.measured | report.trust.filled,
+        report.silence,
+    )
+
+
+@jax.jit
+def _chunk(
+    monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"]
+) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]]]:
+    """What is kept of each row, packed; rows beyond the log's end (`real` False) leave the state alone."""
+
+    def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, tuple[Array, Array]]:
+        sample, real = row
+        after, report = monitor.step(state, sample)
+        kept: MonitorState = jax.tree.map(lambda new, old: jnp.where(real, new, old), after, state)
+        return kept, pack(_keep(report))
+
+    done: tuple[MonitorState, tuple[Array, Array]] = lax.scan(one, state, (rows, real))
+    return done
+
+
+def _told(monitor: Monitor, state: MonitorState, sample: Sample) -> Replayed:
+    return _keep(monitor.step(state, sample)[1])
+
+
+def _strong(tree: tuple[Monitor, MonitorState]) -> tuple[Monitor, MonitorState]:
+    """Without weak types, which would compile the same step again."""
+    made: tuple[Monitor, MonitorState] = jax.tree.map(lambda x: jnp.asarray(x, jnp.result_type(x)), tree)
+    return made
+
+
+def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> Replayed:
+    """Judge every row of a log, from a fresh start. `progress` is told the share done, 0 to 1.
+
+    Raises:
+        LogError: the log is empty.
+    """
+    return replay_on(monitor, monitor.init(), log, progress)[1]
+
+
+def replay_on(
+    monitor: Monitor, state: MonitorState, log: Log, progress: Progress | None = None
+) -> tuple[MonitorState, Replayed]:
+    """The same from any state, as after the part of the log before this one; and the state after it.
+
+    Raises:
+        LogError: the log is empty.
+    """
+    total = len(log)
+    if not total:
+        raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
+    (monitor, state), told = _strong((monitor, state)), []
+    long = EPOCHS if log.block else CHUNK
+    for start in range(0, total, long):
+        rows = np.minimum(np.arange(start, start + long), total - 1)
+        real = np.arange(start, start + long) < total
+        block = jax.tree.map(lambda array, rows=rows: array[rows], log.block)
+        chunk = samples(log.time[rows], log.value[rows], log.fresh[rows], block)
+        state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
+        told.append([np.asarray(part) for part in kept])
+        if progress:
+            progress(min(1.0, (start + long) / total))
+    example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
+    return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))

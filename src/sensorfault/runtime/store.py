@@ -1,0 +1,176 @@
+"""A fitted model to one file and back, to the bit: safetensors with a readable header. Nothing in it is executed."""
+
+import hashlib
+import json
+import math
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import sensorfault.core._jax  # isort: skip  # noqa: F401
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from safetensors import SafetensorError, safe_open
+from safetensors.numpy import save_file
+
+from sensorfault.core.files import appearing
+from sensorfault.core.monitor import Monitor
+from sensorfault.core.types import Sample
+from sensorfault.logs.epochs import Framing
+from sensorfault.logs.table import Channel, LogError, Sensor
+from sensorfault.runtime.model import Model, owners
+from sensorfault.runtime.registry import PARTS
+
+FORMAT = 1
+Tensors = dict[str, np.ndarray]
+
+
+class ModelError(LogError):
+    """A model file that cannot be used: what is wrong with it, and what to do."""
+
+
+def save(model: Model, path: Path | str) -> None:
+    """Write the model; the file appears whole or not at all.
+
+    The header is JSON under the key `sensorfault`: format, versions, method, channels with units, sensors, summary, the
+    monitor's parts, and a digest over header and numbers.
+    """
+    tensors: Tensors = {}
+    header = {
+        "format": FORMAT,
+        "versions": _versions(),
+        "method": model.method,
+        "channels": [vars(channel) for channel in model.channels],
+        "sensors": [vars(sensor) for sensor in model.sensors],
+        "tests": model.tests,
+        "watched": model.watched,
+        "tick_s": model.tick_s,
+        "sigma": model.sigma,
+        "summary": model.summary,
+        "framing": vars(model.framing) if model.framing else None,
+        "monitor": _encode(model.monitor, "monitor", tensors),
+    }
+    text = json.dumps(header, sort_keys=True)
+    with appearing(Path(path)) as temporary:
+        save_file(tensors, temporary, {"sensorfault": text, "digest": _digest(text, tensors)})
+
+
+def load(path: Path | str) -> Model:
+    """Read a model back.
+
+    Raises:
+        ModelError: not there, not ours, cut short, changed since it was written, or of another format.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ModelError(f"{path}: there is no such model file; make one with 'sensorfault fit LOG --out {path.name}'.")
+    refit = "fit the model again"
+    try:
+        with safe_open(path, framework="numpy") as file:
+            meta = file.metadata() or {}
+            tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+    except (SafetensorError, OSError, ValueError) as error:
+        raise ModelError(f"{path}: not a model file, or cut short ({error}); {refit}.") from None
+    if "sensorfault" not in meta:
+        raise ModelError(f"{path}: a safetensors file, but not one of sensorfault's; give a file that 'fit' wrote.")
+    text = meta["sensorfault"]
+    if meta.get("digest") != _digest(text, tensors):
+        raise ModelError(f"{path}: its contents were changed after it was written; {refit}.")
+    try:
+        header = json.loads(text)
+        if header["format"] != FORMAT:
+            raise ModelError(f"{path}: written in format {header['format']}, this version reads {FORMAT}; {refit}.")
+        monitor = _decode(header["monitor"], tensors)
+        if not isinstance(monitor, Monitor):
+            raise TypeError("it holds no monitor")
+        model = Model(
+            header["method"],
+            monitor,
+            tuple(Channel(**channel) for channel in header["channels"]),
+            tuple(Sensor(**sensor) for sensor in header["sensors"]),
+            tuple((name, channel) for name, channel in header["tests"]),
+            tuple(header["watched"]),
+            header["tick_s"],
+            tuple(header["sigma"]),
+            header["summary"],
+            _framing(header.get("framing")),
+        )
+        _try(model)
+        return model
+    except ModelError:
+        raise
+    except (KeyError, IndexError, AttributeError, TypeError, ValueError) as error:
+        raise ModelError(f"{path}: its header does not describe a model ({error}); {refit}.") from None
+
+
+def _try(model: Model) -> None:
+    """Trace one step, computing nothing: parts that do not fit each other are refused here, not on the road."""
+    channels = len(model.channels)
+    if owners(model.channels, model.sensors) != model.monitor.owner or not model.tick_s > 0:
+        raise ValueError("its channels, sensors or clock do not go together")
+    if not channels == len(model.watched) == len(model.sigma):
+        raise ValueError("its channels are not as many as its marks for them")
+    none = jnp.zeros(channels, bool)
+    block = jax.tree.map(jnp.asarray, model.framing.nothing) if model.framing else ()
+    sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none, block)
+    after, told = jax.eval_shape(lambda: model.monitor.step(model.monitor.init(), sample))
+    before = jax.eval_shape(model.monitor.init)
+    if jax.tree.map(jnp.shape, after) != jax.tree.map(jnp.shape, before):
+        raise ValueError("a step changes the shape of its state")
+    if sum(score.value.shape[0] for score in told.scores) != len(model.tests):
+        raise ValueError("its tests are not as many as their names")
+
+
+def _framing(told: dict[str, Any] | None) -> Framing | None:
+    if told is None:
+        return None
+    fields: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in told.items()}
+    return Framing(**fields)
+
+
+def _versions() -> dict[str, str]:
+    from importlib.metadata import version
+
+    return {name: version(name) for name in ("sensorfault", "jax", "equinox", "numpy")}
+
+
+def _digest(text: str, tensors: Tensors) -> str:
+    digest = hashlib.sha256(text.encode())
+    for name in sorted(tensors):
+        tensor = tensors[name]
+        digest.update(f"{name} {tensor.dtype.str} {tensor.shape}".encode() + np.ascontiguousarray(tensor).tobytes())
+    return digest.hexdigest()
+
+
+def _encode(thing: Any, name: str, tensors: Tensors) -> Any:
+    """A part as JSON, its arrays put aside under their path in the tree."""
+    match thing:
+        case eqx.Module():
+            inner = {f.name: _encode(getattr(thing, f.name), f"{name}.{f.name}", tensors) for f in fields(thing)}
+            return {"part": type(thing).__name__, "fields": inner}
+        case jax.Array() | np.ndarray():
+            tensors[name] = np.asarray(thing)
+            return {"tensor": name}
+        case tuple():
+            return [_encode(one, f"{name}.{i}", tensors) for i, one in enumerate(thing)]
+        case bool() | int() | str() | None:
+            return thing
+        case float() if math.isfinite(thing):
+            return thing
+        case _:
+            raise TypeError(f"{name}: a {type(thing).__name__} cannot be stored; make it an array, number or name")
+
+
+def _decode(told: Any, tensors: Tensors) -> Any:
+    match told:
+        case {"tensor": name}:
+            return jnp.asarray(tensors[name])
+        case {"part": part, "fields": inner}:
+            return PARTS[part](**{field: _decode(one, tensors) for field, one in inner.items()})
+        case list():
+            return tuple(_decode(one, tensors) for one in told)
+        case _:
+            return told

@@ -1,0 +1,88 @@
+"""Where jams are struck: while the car moves, as many as fit, in the part of a drive that nobody was fitted on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Int
+
+from sensorfault.faults.fault import Fault
+from sensorfault.faults.inject import inject
+from sensorfault.logs import read
+from sensorfault.logs.table import Log
+from sensorfault.vehicles.car import LEAST_SPEED, Roles, moving, roles
+from sensorfault_studies.data import real
+
+LEARN = 0.6
+RECOVERY_S = 1.0  # after a jam nothing is scored for so long
+WARM_S = 3.0  # ... nor at the beginning
+PAUSE = (1.0, 2.0)  # healthy time after a jam and its recovery, in lengths of the jam, drawn evenly between these
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A real drive: the part to learn from, the rest, and the rows of the rest that bring a new position."""
+
+    name: str
+    learn: Log
+    rest: Log
+    roles: Roles
+
+    @classmethod
+    def read(cls, name: str, folder: str) -> "Drive":
+        log = read(real(folder))
+        cut = float(log.time[0]) + LEARN * log.duration_s
+        return cls(name, log.between(end_s=cut), log.between(cut), roles(log))
+
+    @property
+    def position(self) -> tuple[int, int]:
+        assert self.roles.position is not None
+        return self.roles.position
+
+    @property
+    def fixes(self) -> Int[np.ndarray, " N"]:
+        """Rows with a new position, once every method is warm."""
+        warm = self.rest.time >= self.rest.time[0] + WARM_S
+        return np.flatnonzero(self.rest.fresh[:, self.position[0]] & warm)
+
+
+@dataclass(frozen=True)
+class Jammed:
+    """A copy of the rest with frozen positions; of its fixes which are frozen, and which are scored."""
+
+    log: Log
+    onsets: tuple[float, ...]
+    frozen: Bool[np.ndarray, " N"]
+    scored: Bool[np.ndarray, " N"]
+
+
+def onsets(drive: Drive, length_s: float, seed: int) -> tuple[float, ...]:
+    """As many jams as fit, the car faster than LEAST_SPEED throughout each; the seed moves them."""
+    rest, rng = drive.rest, np.random.default_rng([seed, round(10 * length_s)])
+    assert drive.roles.velocity is not None
+    heard = rest.time[rest.fresh[:, drive.roles.velocity[0]]]
+    slow = np.setdiff1d(heard, moving(rest, drive.roles, LEAST_SPEED))
+    time = float(rest.time[0]) + WARM_S + float(rng.uniform(0.0, length_s + 1.0))
+    found: list[float] = []
+    while time + length_s + RECOVERY_S < heard[-1]:
+        stops = slow[(slow >= time - RECOVERY_S / 2) & (slow < time + length_s)]
+        if stops.size:
+            time = float(stops[-1]) + RECOVERY_S / 2 + 1e-3
+        else:
+            found.append(time)
+            time += length_s + RECOVERY_S + length_s * float(rng.uniform(*PAUSE))
+    return tuple(found)
+
+
+def jammed(drive: Drive, length_s: float, seed: int, channels: Sequence[str] = ("latitude", "longitude")) -> Jammed:
+    """The receiver's `channels` frozen: at each of its epochs they read what they read before the onset."""
+    sensor = drive.rest.channels[drive.position[0]].sensor
+    at = onsets(drive, length_s, seed)
+    faults = [Fault("jam", sensor, name, onset, length_s) for onset in at for name in channels]
+    log = inject(drive.rest, faults, seed).log if faults else drive.rest
+    time = drive.rest.time[drive.fixes]
+    frozen, scored = np.zeros(len(time), bool), np.ones(len(time), bool)
+    for onset in at:
+        frozen |= (time >= onset) & (time < onset + length_s)
+        scored &= ~((time >= onset + length_s) & (time < onset + length_s + RECOVERY_S))
+    return Jammed(log, at, frozen, scored)

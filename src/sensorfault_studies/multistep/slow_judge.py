@@ -1,0 +1,106 @@
+"""One test of a slow drift on one flight: every rate from every onset, and what its scores say under a limit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import sensorfault.core._jax  # isort: skip  # noqa: F401
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Bool, Float
+
+from sensorfault.core.monitor import Monitor
+from sensorfault.methods.height import drifting
+from sensorfault.methods.height.drift_setting import DriftTest, Setting
+from sensorfault.stages.threshold.fixed import Fixed
+from sensorfault_studies.multistep.beats import Beats
+from sensorfault_studies.multistep.contenders import watch
+
+RATES = (0.1, 0.3, 1.0)  # [m/s]
+EVERY_S, BEGIN_S, LEAST_S = 15.0, 5.0, 100.0  # from one onset to the next, after half of the flight, before its end
+HALF = "first-half"  # what a limit is learned from
+MATCHED = "matched0"  # the largest healthy score of the second half: the lowest limit without a false alarm there
+
+
+@dataclass(frozen=True)
+class Told:
+    """Of one test under one limit: scores of the healthy flight; of each rate and onset the delay [s], to the end of
+    the flight where nothing was found.
+
+    `chance_s`: the delay without a ramp. `false`: alarms in the second half of the healthy flight, an unbroken run of
+    them once; `far`: their share of the beats. `ratio`: largest healthy score of the second half over that of the
+    first. `ramped`: the score with the slowest ramp from the middle onset on, `onset_s`.
+    """
+
+    time: Float[np.ndarray, " T"]
+    score: Float[np.ndarray, " T"]
+    ramped: Float[np.ndarray, " T"]
+    onset_s: float
+    limit: float
+    delay: Float[np.ndarray, "rates onsets"]
+    missed: Bool[np.ndarray, "rates onsets"]
+    chance_s: float
+    false: int
+    far: float
+    ratio: float
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Scores of one test without consequences: cell 0 without a ramp, then every rate from every onset."""
+
+    beats: Beats
+    score: Float[np.ndarray, "N T"]
+    onsets: Float[np.ndarray, " o"]
+    margin: float
+
+    def told(self, learned: str) -> Told:
+        """Under a limit of HALF or MATCHED. What an alarm changes comes after the first alarm."""
+        time, score = self.beats.log.time, self.score
+        second = time >= self.beats.half
+        first_max, second_max = float(np.nanmax(score[0, ~second])), float(np.nanmax(score[0, second]))
+        limit = self.margin * first_max if learned == HALF else second_max
+        onsets, middle = self.onsets, len(self.onsets) // 2
+        delay, found = _first(time, score[1:] > limit, np.tile(onsets, len(RATES)))
+        chance, _ = _first(time, np.broadcast_to(score[0] > limit, (len(onsets), len(time))), onsets)
+        quiet = score[0, second] > limit
+        return Told(
+            time=time,
+            score=score[0],
+            ramped=score[1 + middle],
+            onset_s=float(onsets[middle]),
+            limit=limit,
+            delay=delay.reshape(len(RATES), -1),
+            missed=~found.reshape(len(RATES), -1),
+            chance_s=float(chance.mean()),
+            false=int(quiet[0]) + int((quiet[1:] & ~quiet[:-1]).sum()),
+            far=float(quiet.mean()),
+            ratio=second_max / first_max,
+        )
+
+
+def judge(beats: Beats, test: DriftTest, settings: Sequence[Setting]) -> list[Judged]:
+    """Every rate from every onset, for each setting."""
+    log, end = beats.log, float(beats.log.time[-1])
+    onsets = np.arange(beats.half + BEGIN_S, end - LEAST_S, EVERY_S)
+    cells = [log, *(beats.with_ramp(rate, float(onset)) for rate in RATES for onset in onsets)]
+    deaf = [_deaf(beats, test, setting) for setting in settings]
+    stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *deaf)
+    score = watch(stacked, cells).score
+    return [Judged(beats, each, onsets, s.margin) for each, s in zip(score, settings, strict=True)]
+
+
+def _deaf(beats: Beats, test: DriftTest, setting: Setting) -> Monitor:
+    """The monitor of a recipe, for a flight that has been brought to beats."""
+    part = replace(beats.fitted, memory_s=jnp.asarray(setting.memory_s))
+    return drifting.monitor(beats.log, part, test.statistic(setting, 2), Fixed(jnp.full(2, jnp.inf)), setting)
+
+
+def _first(
+    time: Float[np.ndarray, " T"], alarm: Bool[np.ndarray, "N T"], begun: Float[np.ndarray, " N"]
+) -> tuple[Float[np.ndarray, " N"], Bool[np.ndarray, " N"]]:
+    """Time from each onset to the first alarm, or to the end, and whether there was one."""
+    after = alarm & (time[None] >= begun[:, None])
+    found = np.asarray(after.any(axis=1))
+    return np.where(found, time[after.argmax(axis=1)], time[-1]) - begun, found

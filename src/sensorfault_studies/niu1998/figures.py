@@ -1,0 +1,109 @@
+"""Figures 3 to 6 of the paper, how slow a drift may be, and whom the network accuses on the real arm."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from sensorfault_studies.findings import Figure, Json, Row
+from sensorfault_studies.niu1998.drifts import AT_RATE, NAMES, Drifts
+from sensorfault_studies.niu1998.fleet import Told
+from sensorfault_studies.niu1998.joints import PATHS
+from sensorfault_studies.niu1998.rivals import NETWORK, SCRATCH
+from sensorfault_studies.niu1998.run import COLUMNS, ONSET, WITHIN
+
+PRINTED = "as-printed"
+UNITS = {"y2": "rad/s", "y4": "rad"}
+NUMBERS = {"y2": (3, 4), "y4": (5, 6)}  # of the paper's figures
+NETWORKS = {f"{PRINTED} {NETWORK}": "taught before", f"{PRINTED} {SCRATCH} {NETWORK}": "from scratch"}
+
+
+def of_the_run(told: Drifts) -> tuple[Figure, ...]:
+    """Of the first run: prediction and measurement, residual and threshold, of y2 and y4."""
+    return tuple(figure for i in range(2) for figure in (_prediction(told, i), _residual(told, i)))
+
+
+def _prediction(told: Drifts, i: int) -> Figure:
+    y, column = NAMES[i], COLUMNS[i]
+    lines = [_line(f"expected, {name}", _expected(told.shown[key][0], column)) for key, name in NETWORKS.items()]
+    value = told.shown[next(iter(NETWORKS))][1][0, :, column]
+    plot: Json = {"data": [_line("measured", value), *lines], "layout": _axes(f"{y} [{UNITS[y]}]")}
+    caption = (
+        f"The paper's figure {NUMBERS[y][0]}: from sample {ONSET} on the sensor drifts by two thresholds a sample; the "
+        "networks stop learning and go on by themselves."
+    )
+    return Figure(f"b_prediction_{y}", f"Prediction and measurement of {y}", caption, plot)
+
+
+def _expected(told: Told, column: int) -> Float[np.ndarray, " T"]:
+    """From the second sample on: at the first nothing is known."""
+    after = np.arange(told.expected.shape[1]) > 0
+    return np.where(after, told.expected[0, :, column], np.nan)
+
+
+def _residual(told: Drifts, i: int) -> Figure:
+    y, column = NAMES[i], COLUMNS[i]
+    lines = [_line(f"residual, {name}", told.shown[key][0].score[0, :, column]) for key, name in NETWORKS.items()]
+    limit = float(told.shown[next(iter(NETWORKS))][0].limit[column])
+    layout = _axes(f"|{y} - expected| [{UNITS[y]}]") | {"yaxis": {"type": "log", "title": {"text": f"[{UNITS[y]}]"}}}
+    threshold = _line("threshold", np.full(len(told.shown[next(iter(NETWORKS))][1][0]), limit)) | {
+        "line": {"dash": "dot"}
+    }
+    caption = f"The paper's figure {NUMBERS[y][1]}; nothing is shown where nothing could be tested."
+    plot: Json = {"data": [*lines, threshold], "layout": layout}
+    return Figure(f"b_residual_{y}", f"Residual of {y} against its threshold", caption, plot)
+
+
+def _line(name: str, y: Float[np.ndarray, " T"]) -> Json:
+    shown = [round(float(v), 6) if np.isfinite(v) else None for v in y]
+    return {"type": "scatter", "mode": "lines", "name": name, "x": list(range(len(y))), "y": shown}
+
+
+def _axes(title: str) -> Json:
+    onset = {"type": "line", "x0": ONSET, "x1": ONSET, "yref": "paper", "y0": 0, "y1": 1, "line": {"dash": "dash"}}
+    return {"xaxis": {"title": {"text": "sample"}}, "yaxis": {"title": {"text": title}}, "shapes": [onset]}
+
+
+def of_slow_drifts(rows: Sequence[Row]) -> tuple[Figure, ...]:
+    """Share found in time against the rate of the drift, a line a method."""
+    return tuple(_slow(rows, y) for y in NAMES)
+
+
+def _slow(rows: Sequence[Row], y: str) -> Figure:
+    ending = f"{AT_RATE} {y}"
+    mine = [row for row in rows if row.condition.endswith(ending) and row.metric == "detection_rate"]
+    data: list[Json] = []
+    for method, condition in dict.fromkeys((row.method, row.condition) for row in mine):
+        of = sorted((row for row in mine if (row.method, row.condition) == (method, condition)), key=_size)
+        variant = condition.removeprefix(PRINTED).removesuffix(ending).strip()
+        name = f"{method} {variant}".strip()
+        x, share = [_size(row) for row in of], [round(row.value, 4) for row in of]
+        data.append({"type": "scatter", "mode": "lines+markers", "name": name, "x": x, "y": share})
+    layout = {
+        "xaxis": {"title": {"text": "drift [thresholds a sample]"}, "type": "log"},
+        "yaxis": {"title": {"text": f"found within {WITHIN} samples"}, "range": [0, 1.02]},
+    }
+    caption = f"{y} drifts alone; every method raises an alarm before the onset in 5 % of healthy runs."
+    return Figure(f"b_slow_{y}", f"How slow a drift of {y} may be", caption, {"data": data, "layout": layout})
+
+
+def _size(row: Row) -> float:
+    return row.magnitude or 0.0
+
+
+def of_isolation(accused: Int[np.ndarray, "12 13"]) -> Figure:
+    """Whom the first alarm accuses, for each faulty sensor."""
+    share = accused / np.maximum(accused.sum(axis=1, keepdims=True), 1)
+    names = [path.split(".")[0] for path in PATHS]
+    heat: Json = {"type": "heatmap", "x": [*names, "nobody"], "y": names, "z": share.round(3).tolist(), "zmin": 0,
+                  "zmax": 1, "colorscale": "Blues", "reversescale": True}  # fmt: skip
+    layout = {
+        "xaxis": {"title": {"text": "accused"}},
+        "yaxis": {"title": {"text": "faulty"}, "autorange": "reversed"},
+        "height": 480,
+    }
+    caption = (
+        f"{NETWORK} on the Schunk arm: short, bias and jam of five one-step errors, limits for one healthy sample in a "
+        "hundred with anybody over his."
+    )
+    return Figure("b_isolation", "Who is accused on the real arm", caption, {"data": [heat], "layout": layout})

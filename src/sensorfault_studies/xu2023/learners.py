@@ -1,0 +1,90 @@
+"""What can be learned of a range's error from its innovation: rules begun and trained in several ways, and odds."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+import jax
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.evaluation.ranking import auc
+from sensorfault.training.fuzzy import Setting, fit_anfis
+from sensorfault.training.labelled import Labelled
+from sensorfault.training.learning_curve import SIZES, Answer, learning_curve
+from sensorfault.training.logistic import fit_logistic
+from sensorfault_studies.numbers import Numbers
+
+ANFIS, LOGISTIC = "anfis-cubature-9m", "logistic-cubature"
+PRINTED = "grid"
+GENERATIONS = 30
+SETTINGS: Mapping[str, Setting] = {
+    PRINTED: Setting(),
+    "untrained": Setting(epochs=0),
+    "gaussian": Setting(kind="gaussian"),
+    "triangle": Setting(kind="triangle"),
+    "log": Setting(log=True, ridge=1e-4),
+    "scatter": Setting(partition="scatter"),
+    "subtractive": Setting(partition="subtractive", radius=0.3),
+    "population": Setting(premises="population", epochs=GENERATIONS),
+}
+CURVES = (PRINTED, "log")
+
+Fit = Callable[[Labelled], Answer]
+
+
+def learners(wrong_m: float, of: Sequence[str] = tuple(SETTINGS)) -> dict[tuple[str, str], Fit]:
+    """By method and variant. Each answers by how much a range is over its limit: foretold metres, or log odds."""
+    rules = {(ANFIS, name): partial(_rules, SETTINGS[name], wrong_m) for name in of}
+    return {**rules, (LOGISTIC, ""): partial(_odds, wrong_m)}
+
+
+def _rules(setting: Setting, wrong_m: float, seen: Labelled) -> Answer:
+    model = jax.tree.map(np.asarray, fit_anfis(seen.features, seen.target, setting).model)
+    return lambda features: np.asarray(model(features)) - wrong_m
+
+
+def _odds(wrong_m: float, seen: Labelled) -> Answer:
+    model = jax.tree.map(np.asarray, fit_logistic(seen.features, seen.target > wrong_m))
+    return lambda features: np.asarray(model(features))
+
+
+def judged(wrong_m: float, over: Float[np.ndarray, " M"], size: Float[np.ndarray, " M"]) -> dict[str, float]:
+    """Xu et al. 2023, (36), (38), (39), and the area under the ROC; NaN where there is nothing to find, or all is.
+
+    `over`: beyond the limit if above 0; `size` of the true errors [m].
+    """
+    wrong, told = size > wrong_m, over > 0
+    some, others = max(int(wrong.sum()), 1), max(int((~wrong).sum()), 1)
+    return {
+        "accuracy": float((told == wrong).mean()),
+        "recall": float((told & wrong).sum() / some) if wrong.any() else float("nan"),
+        "fpr": float((told & ~wrong).sum() / others) if (~wrong).any() else float("nan"),
+        "auc": auc(over, wrong),
+    }
+
+
+def compared(numbers: Numbers, condition: str, learn: Labelled, test: Labelled, wrong_m: float) -> None:
+    """Every way to begin and train the rules, learned from the same rows and judged on the same."""
+    for (method, variant), fit in learners(wrong_m).items():
+        answer = fit(learn)
+        over = answer(test.features)
+        told = judged(wrong_m, over, test.target)
+        if method == ANFIS:
+            told["rms"] = float(np.sqrt(np.mean((over + wrong_m - test.target) ** 2)))
+        numbers.add(f"{condition} {variant}".strip(), method, told)
+
+
+def curves(
+    numbers: Numbers,
+    condition: str,
+    learn: Labelled,
+    test: Labelled,
+    wrong_m: float,
+    sizes: Sequence[int] = SIZES,
+    draws: int = 5,
+) -> None:
+    """Learning curves; the number of rows is the condition's last word, and what they are drawn from stays the same."""
+    for (method, variant), fit in learners(wrong_m, CURVES).items():
+        for size, told in learning_curve(fit, partial(judged, wrong_m), learn, test, sizes, draws):
+            words = [condition, variant, f"n{size}"]
+            numbers.add(" ".join(word for word in words if word), method, told)

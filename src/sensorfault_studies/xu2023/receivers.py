@@ -1,0 +1,91 @@
+"""Real sound under water: a diving robot's beacon, heard by four receivers whose places nobody wrote down."""
+
+from typing import NamedTuple
+
+import numpy as np
+import polars as pl
+from jaxtyping import Bool, Float
+from scipy.optimize import least_squares
+
+from sensorfault_studies.data import real
+from sensorfault_studies.xu2023.ranged_log import START, TAG, ranged_log
+from sensorfault_studies.xu2023.scenario import Scenario
+
+LEARNED = 1 / 2
+WILD_M = 0.1  # errors beyond this hardly count while the receivers are placed
+IMPOSSIBLE_M = 0.5  # by so much two ranges differ more than their receivers are apart
+
+
+class Dive(NamedTuple):
+    """Of each round of ranges: time [s], ranges [m], NaN where none came; the device's own x, y and down [m] and
+    whether it stands by them; signal over noise of each receiver [dB].
+    """
+
+    time: Float[np.ndarray, " T"]
+    range: Float[np.ndarray, "T 4"]
+    position: Float[np.ndarray, "T 3"]
+    solved: Bool[np.ndarray, " T"]
+    signal: Float[np.ndarray, "T 4"]
+
+    @property
+    def early(self) -> Bool[np.ndarray, " T"]:
+        """The rounds that are learned from."""
+        return np.asarray(self.time < LEARNED * self.time[-1])
+
+
+def dive() -> Dive:
+    """The rounds in which a range was new; the file repeats the last until the next.
+
+    Raises:
+        LogError: it is not there.
+    """
+    (file,) = real("underwater/ugps_g2_acoustic").glob("*_acoustic.csv")
+    told = pl.read_csv(file, infer_schema_length=None)
+    raw = _four(told, "distance")
+    new = np.append(False, (np.diff(raw, axis=0) != 0).any(axis=1)) & (raw >= 0).any(axis=1)
+    time = told["timestamp"].to_numpy()[new]
+    return Dive(
+        time=time - time[0],
+        range=np.where(raw >= 0, raw, np.nan)[new],
+        position=told.select("x", "y", "z").to_numpy()[new],
+        solved=told["position_valid"].to_numpy()[new],
+        signal=(_four(told, "rssi") - _four(told, "nsd"))[new],
+    )
+
+
+def _four(told: pl.DataFrame, what: str) -> Float[np.ndarray, "T 4"]:
+    return told.select(f"{what}_r{i}" for i in range(4)).to_numpy().astype(float)
+
+
+def placed(of: Dive) -> Float[np.ndarray, "4 3"]:
+    """Where the receivers are: what the ranges and the device's positions of the first half agree on best [m]."""
+    rows = of.early & of.solved
+    ranges, position = of.range[rows], of.position[rows]
+
+    def errors(x: Float[np.ndarray, "12"]) -> Float[np.ndarray, " n"]:
+        away = np.linalg.norm(position[:, None] - x.reshape(4, 3), axis=2)
+        return np.asarray((ranges - away)[np.isfinite(ranges)])
+
+    return np.asarray(least_squares(errors, np.zeros(12), loss="soft_l1", f_scale=WILD_M).x.reshape(4, 3))
+
+
+def scenario(of: Dive, receivers: Float[np.ndarray, "4 3"]) -> Scenario:
+    """Begins where the device says, and is told the depth. `error` and `position` are by the device: no truth."""
+    first = np.where(np.arange(len(of.time))[:, None] == 0, of.position, np.nan)
+    own = {START[0]: first[:, 0], START[1]: first[:, 1], TAG: of.position[:, 2]}
+    ranges = {f"receiver{j}": of.range[:, j] for j in range(4)}
+    away = np.linalg.norm(of.position[:, None] - receivers, axis=2)
+    return Scenario(
+        log=ranged_log("dive", of.time, own, ranges, receivers),
+        error=of.range - away,
+        position=of.position[:, :2],
+        since_s=LEARNED * float(of.time[-1]),
+        geodetic=False,
+    )
+
+
+def impossible(of: Dive, receivers: Float[np.ndarray, "4 3"]) -> Bool[np.ndarray, "T 4"]:
+    """Ranges that cannot be right if any two of the others are: |d_i - d_j| ≤ |p_i - p_j| fails against two."""
+    apart = np.linalg.norm(receivers[:, None] - receivers, axis=2)
+    differ = np.abs(of.range[:, :, None] - of.range[:, None])
+    return np.asarray((differ > apart + IMPOSSIBLE_M).sum(axis=2) >= 2)

@@ -1,0 +1,68 @@
+"""What rules can be learned, from how much, and what they look like."""
+
+import numpy as np
+
+from sensorfault.methods.ranging.anfis_cubature import RULES
+from sensorfault.methods.ranging.range_filter import Filter, followed
+from sensorfault.methods.ranging.ranges_learned import learned
+from sensorfault.numerics.innovation import FEATURES
+from sensorfault.training.fuzzy import fit_anfis
+from sensorfault.training.labelled import Labelled, joined
+from sensorfault.training.ranges import Lesson
+from sensorfault.training.rules import sentences
+from sensorfault_studies.findings import Effort, Figure, Findings
+from sensorfault_studies.numbers import Numbers
+from sensorfault_studies.xu2023.contenders import POOLED, early
+from sensorfault_studies.xu2023.learners import compared, curves
+from sensorfault_studies.xu2023.learning_figures import features, learning, memberships, surface
+from sensorfault_studies.xu2023.scenario import WRONG_M, Scenario, scenario
+
+Q = 0.2
+POOL, SEEN = 300, 1000  # seeds of the first missions learned from and judged
+
+
+def findings(effort: Effort) -> Findings:
+    """Open loop: every range is taken in, as in the training of the paper."""
+    effort.tell("rules from much and from little", 0.0)
+    many = 3 if effort.quick else 8
+    pool, seen = ([scenario(first + k) for k in range(many)] for first in (POOL, SEEN))
+    numbers = Numbers("E-rules", "simulated", "simulated")
+    learn, test = (_labelled([early(case) for case in pool], True), _labelled([_late(case) for case in seen], True))
+    compared(numbers, "Q0.2 open-loop pooled", joined(learn), joined(test), WRONG_M)
+    for one, own in zip(seen, [_labelled([early(case)], True) for case in seen], strict=True):
+        compared(numbers, "Q0.2 open-loop one-mission", joined(own), joined(_labelled([_late(one)], True)), WRONG_M)
+    curves(numbers, "Q0.2 open-loop", joined(learn), joined(test), WRONG_M, draws=2 if effort.quick else 5)
+    rows = tuple(numbers.rows())
+    figures = []
+    for j in range(2):
+        fit = fit_anfis(*learn[j], RULES)
+        figures += [
+            memberships(f"e-rules_memberships{j + 1}", f"Membership functions of ANFIS-{j + 1}", fit.start, fit.model),
+            surface(
+                f"e-rules_surface{j + 1}", f"Error of a range to leader {j + 1} over its features", fit.model, learn[j]
+            ),
+        ]
+    figures.append(_features(pool[0]))
+    figures.append(learning("e-rules_learning", "How much there must be to learn from", rows))
+    said = sentences(fit_anfis(*joined(learn), POOLED).model, FEATURES)
+    remark = "Rules learned from eight missions, both leaders, of the logarithms: " + " ".join(said)
+    return Findings(rows, tuple(figures), (remark,))
+
+
+def _late(case: Scenario) -> Lesson:
+    """The judged part, in a run through the whole mission."""
+    return Lesson(case.log, np.where(case.judged[:, None], case.error, np.nan))
+
+
+def _labelled(lessons: list[Lesson], adaptive: bool) -> list[Labelled]:
+    log = lessons[0].log
+    return learned(log, followed("xu2023", log), Filter(Q, 3.0, adaptive), lessons)
+
+
+def _features(case: Scenario) -> Figure:
+    """Of the first leader, before the judged part."""
+    lesson = early(case)
+    plain, adaptive = (_labelled([lesson], kind)[0] for kind in (False, True))
+    at = lesson.log.time[~np.isnan(lesson.error[:, 0])][-len(plain.target) :]
+    title = "Features of the ranges to leader 1, by both filters"
+    return features("e-rules_features", title, at, plain.target, plain.features, adaptive.features)

@@ -1,0 +1,53 @@
+"""Paper E: ranges under water that lie, told by chi-square, by fuzzy rules, and by what we stand for."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from sensorfault_studies.data import real
+from sensorfault_studies.findings import Effort, Findings, Row
+from sensorfault_studies.xu2023 import ranging, rules
+from sensorfault_studies.xu2023.figures import of_missions
+from sensorfault_studies.xu2023.missions import CONDITIONS, Told, judged
+from sensorfault_studies.xu2023.remarks import PAPER, remarks
+
+FOLDERS = ("underwater/snapir_auv", "underwater/ugps_g2_acoustic", "ranging/uwb_outdoor", "ranging/mrclam")
+JUDGED, LEARNED = 0.85, 0.1  # shares of the work
+
+
+def study(effort: Effort) -> Findings:
+    """All of E.
+
+    Raises:
+        LogError: the real paths or ranges are not there; said before any work is done.
+    """
+    for folder in FOLDERS:
+        real(folder)
+    told = []
+    for k, condition in enumerate(CONDITIONS):
+        share = JUDGED / len(CONDITIONS)
+        told.append(judged(condition, _part(effort, k * share, share)))
+    rows = tuple(row for one in told for row in rows_of(one))
+    figures = tuple(figure for one in told for figure in of_missions(one))
+    missions = Findings(rows, figures, remarks(told))
+    learned = rules.findings(_part(effort, JUDGED, LEARNED))
+    return missions + learned + ranging.findings(_part(effort, JUDGED + LEARNED, 1 - JUDGED - LEARNED))
+
+
+def _part(effort: Effort, begin: float, share: float) -> Effort:
+    return replace(effort, tell=lambda doing, done: effort.tell(doing, begin + share * done))
+
+
+def rows_of(told: Told) -> Iterator[Row]:
+    """With the paper's numbers beside its own methods, as printed, on the simulated mission."""
+    for row in told.numbers.rows():
+        variant = row.condition.removeprefix(told.condition.words).removesuffix("as-printed").strip()
+        printed = PAPER.get(f"{row.method} {variant}".strip())
+        here = told.condition.data == "simulated" and told.condition.words != "fast"
+        if printed is None or not here or not row.condition.endswith("as-printed"):
+            yield row
+            continue
+        tp, tn, fp, fn = printed
+        paper = dict(zip(("tp", "tn", "fp", "fn"), map(float, printed), strict=True))
+        paper |= {"accuracy": (tp + tn) / sum(printed), "precision": tp / (tp + fp), "recall": tp / (tp + fn)}
+        paper |= {"fpr": fp / (tn + fp), "fnr": fn / (tp + fn)}
+        yield replace(row, paper=paper.get(row.metric))

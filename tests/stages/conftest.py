@@ -1,0 +1,3 @@
+from laws.strict import strict
+
+__all__ = ["strict"]

@@ -1,0 +1,121 @@
+"""The cubature filter as a residual: what it foretells, what it takes in, and how it comes back."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import missions
+from laws.walk import walk
+from sensorfault.core.monitor import Branch
+from sensorfault.core.types import FAULT
+from sensorfault.faults.fault import Fault
+from sensorfault.faults.inject import inject
+from sensorfault.methods.ranging.range_filter import Filter, cubature, followed, monitor, on_ranges
+from sensorfault.stages.residual.measurement_noise import SageHusa, Stated, WindowedNoise
+from sensorfault.stages.statistic.normalised import Normalised
+
+R = jnp.asarray([9.0, 4.0])
+YES = jnp.ones(2, bool)
+
+
+def through(log, filter=Filter(q=0.1), limit=np.inf):  # noqa: B008
+    found = followed("test", log)
+    branch = Branch(Normalised(), on_ranges(log, found, limit))
+    return walk(monitor(log, cubature(log, found, filter), branch), missions.rows(log))
+
+
+def off_m(told, mission) -> np.ndarray:
+    """How far the belief is from the truth at each tick [m]."""
+    scale = np.array([6.367e6, 6.387e6 * np.cos(mission.truth.value[0, 0])])
+    return np.linalg.norm((told.states.residual.mean - mission.truth.value[:, :2]) * scale, axis=1)
+
+
+def test_innovations_are_as_large_as_it_says() -> None:
+    told = through(missions.healthy().log, Filter(q=0.1, adaptive=False))
+    for column in missions.RANGES:
+        valid = told.reports.residual.valid[:, column]
+        size = told.reports.residual.value[valid, column] / np.sqrt(told.reports.residual.cov[valid, column, column])
+        assert valid.sum() > 150
+        assert 0.85 < size.std() < 1.15
+
+
+def test_it_knows_where_it_is() -> None:
+    mission = missions.healthy()
+    told = through(mission.log)
+    assert np.percentile(off_m(told, mission)[60:], 95) < 5.0
+
+
+def test_a_surprise_weighs_less() -> None:
+    """(30), (31): R* = R max(1, r² / P_zz), each range by itself."""
+    log = inject(missions.healthy().log, [Fault("bias", "leader1", "range", 500.0, 30.0, 40.0)]).log
+    residual = through(log).reports.residual
+    column = missions.RANGES[0]
+    valid = residual.valid[:, column]
+    want = 9.0 * np.maximum(1, residual.value[:, column] ** 2 / residual.cov[:, column, column])
+    np.testing.assert_allclose(residual.noise[valid, column], want[valid], rtol=1e-3)
+    assert residual.noise[valid, column].max() > 50
+
+
+def test_an_exact_repeat_is_no_news() -> None:
+    mission = missions.healthy()
+    log = inject(mission.log, [Fault("jam", "leader1", "range", 500.0, 120.0)]).log
+    fooled, wise = (off_m(through(log, Filter(q=0.1, repeated=times)), mission) for times in (1.0, 1e6))
+    alone = off_m(through(mission.log), mission)
+    during = slice(500, 640)
+    assert fooled[during].max() > alone[during].max() + 3.0
+    assert wise[during].max() < alone[during].max() + 2.0
+
+
+def test_refusing_all_it_doubts_itself() -> None:
+    """Put 80 m off, a filter whose gate is shut comes back if its doubt grows, and not in minutes if it does not."""
+    mission = missions.healthy()
+    log = mission.log
+    value = log.value.copy()
+    value[0, :2] += 80 / 6.367e6, 80 / 4.45e6
+    moved = replace(log, value=value)
+    stays, returns = (off_m(through(moved, Filter(q=0.1, growth=g), 2.6), mission) for g in (0.0, 0.5))
+    assert returns[150:].max() < 15.0
+    assert stays[150] > 30.0
+
+
+def test_without_a_heading_the_way_is_unknown() -> None:
+    """Two metres a second in a direction that nobody knows: the spread grows in proportion to the time."""
+    log = missions.healthy().log
+    value, fresh = log.value.copy(), log.fresh.copy()
+    hidden = (slice(300, 400), [4, 6, 7, 8, 9, 10, 11, 12, 13])
+    value[hidden], fresh[hidden] = np.nan, False
+    told = through(replace(log, value=value, fresh=fresh))
+    spread = 6.367e6 * np.sqrt((told.states.residual.root[:, 0] ** 2).sum(axis=1))
+    assert spread[399] == pytest.approx(spread[301] + 2.0 * 98, rel=0.02)
+    assert off_m(told, missions.healthy())[440:].max() < 25.0
+
+
+def test_nothing_is_told_before_a_first_fix() -> None:
+    log = missions.healthy().log
+    value, fresh = log.value.copy(), log.fresh.copy()
+    value[:200, :2], fresh[:200, :2] = np.nan, False
+    told = through(replace(log, value=value, fresh=fresh), limit=0.0)
+    assert not told.reports.residual.valid[:200].any()
+    assert not (told.channel[:200] == FAULT).any()
+    assert told.reports.residual.valid[201:, missions.RANGES[0]].any()
+
+
+@pytest.mark.parametrize("noise", [SageHusa(jnp.asarray(0.98)), WindowedNoise(50)])
+def test_noise_is_learned_from_what_is_taken_in(noise) -> None:
+    rng = np.random.default_rng(0)
+    state = noise.init(R)
+    learn = jax.jit(lambda *now: noise.learn(*now))
+    for _ in range(400):
+        innovation = jnp.asarray(rng.normal(0, np.sqrt([25.0 + 2.0, 1.0 + 2.0])))
+        state = learn(state, innovation, jnp.asarray([2.0, 2.0]), YES)
+    np.testing.assert_allclose(noise.noise(state, R, jnp.zeros(2), R), [25.0, 1.0], rtol=0.5)
+    after = learn(state, jnp.asarray([1e6, 1e6]), R, ~YES)
+    assert jax.tree.all(jax.tree.map(lambda a, b: bool((a == b).all()), after, state))
+
+
+def test_the_stated_noise_is_what_is_learned_first() -> None:
+    for noise in (Stated(), SageHusa(jnp.asarray(0.9)), WindowedNoise(5)):
+        np.testing.assert_array_equal(noise.noise(noise.init(R), R, jnp.zeros(2), R), R)
