@@ -45,11 +45,11 @@ def ranges(seeds: range, leaders: tuple[int, ...], until_s: float) -> Labelled:
     for seed in seeds:
         case = scenario(seed)
         found = followed("bench", case.log)
-        told = through(monitor(case.log, cubature(case.log, found, Filter())), case).residual
+        result = through(monitor(case.log, cubature(case.log, found, Filter())), case).residual
         for j in leaders:
             c = found.leaders[j].range
-            there = told.valid[:, c] & ~np.isnan(case.error[:, j]) & (case.log.time < until_s)
-            seen = (x[there] for x in (told.value[:, c], told.cov[:, c, c], told.noise[:, c]))
+            there = result.valid[:, c] & ~np.isnan(case.error[:, j]) & (case.log.time < until_s)
+            seen = (x[there] for x in (result.value[:, c], result.cov[:, c, c], result.noise[:, c]))
             features_of.append(features(*seen))
             errors.append(np.abs(case.error[there, j]))
     return Labelled(np.concatenate(features_of), np.concatenate(errors))
@@ -61,10 +61,10 @@ def rms(x: np.ndarray) -> float:
 
 def ours(seen: Labelled, unseen: Labelled, step: float) -> Learned:
     start = perf_counter()
-    told = fit_anfis(*seen, Setting(step=step, epochs=EPOCHS, reach=0.0, ridge=PENALTY / len(seen.target)))
+    result = fit_anfis(*seen, Setting(step=step, epochs=EPOCHS, reach=0.0, ridge=PENALTY / len(seen.target)))
     fit_s = perf_counter() - start
-    model = jax.tree.map(np.asarray, told.model)
-    return Learned(fit_s, told.rmse, rms(model(unseen.features) - unseen.target))
+    model = jax.tree.map(np.asarray, result.model)
+    return Learned(fit_s, result.rmse, rms(model(unseen.features) - unseen.target))
 
 
 def theirs(seen: Labelled, unseen: Labelled, rate: float) -> Learned:

@@ -36,8 +36,8 @@ def on_cpu(work: Work, own: Any, count: int) -> tuple[float, float, Any]:
     one(parts[0])  # compile
     alone = min(seconds(lambda: one(parts[0]), TIMES))
     with ThreadPoolExecutor(cores) as pool:
-        together, told = best(lambda: list(pool.map(one, parts)))
-    return alone * len(parts), together, jax.tree.map(lambda *xs: np.concatenate(xs)[:count], *told)
+        together, result = best(lambda: list(pool.map(one, parts)))
+    return alone * len(parts), together, jax.tree.map(lambda *xs: np.concatenate(xs)[:count], *result)
 
 
 def on_gpu(work: Work, own: Any) -> tuple[float, float, float, Any]:
@@ -49,19 +49,19 @@ def on_gpu(work: Work, own: Any) -> tuple[float, float, float, Any]:
         return jax.tree.map(np.asarray, work.run(shared, own))
 
     first = seconds(whole, 1)[0]
-    took, told = best(whole)
+    took, result = best(whole)
     there = jax.device_put(own, gpu)
-    return took, min(seconds(lambda: jax.block_until_ready(work.run(shared, there)), TIMES)), first - took, told
+    return took, min(seconds(lambda: jax.block_until_ready(work.run(shared, there)), TIMES)), first - took, result
 
 
 def best(work: Callable[[], Any]) -> tuple[float, Any]:
     """The shortest time of a few [s], and what came out."""
-    told: list[Any] = []
+    result: list[Any] = []
 
     def once() -> None:
-        told[:] = [work()]
+        result[:] = [work()]
 
-    return min(seconds(once, TIMES)), told[0]
+    return min(seconds(once, TIMES)), result[0]
 
 
 def agree(ours: Any, theirs: Any) -> tuple[float, float]:

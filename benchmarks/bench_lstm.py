@@ -36,8 +36,8 @@ class Peer(torch.nn.Module):
         self.output = torch.nn.Linear(CELLS, OUTPUTS)
 
     def forward(self, window: torch.Tensor) -> torch.Tensor:
-        told = self.lstm(window)[0]
-        return self.output(told[:, -1] if self.batch_first else told[-1])
+        result = self.lstm(window)[0]
+        return self.output(result[:, -1] if self.batch_first else result[-1])
 
     def __str__(self) -> str:
         return f"PyTorch, batch {'first' if self.batch_first else 'second'}"
@@ -56,8 +56,8 @@ class PeerTraining:
             chosen = order[start : start + BATCH]
             x = self.x[chosen]
             self.adam.zero_grad()
-            told = self.net(x if self.net.batch_first else x.transpose(0, 1))
-            torch.nn.functional.mse_loss(told, self.y[chosen]).backward()
+            result = self.net(x if self.net.batch_first else x.transpose(0, 1))
+            torch.nn.functional.mse_loss(result, self.y[chosen]).backward()
             self.adam.step()
 
 

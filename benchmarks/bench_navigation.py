@@ -73,9 +73,9 @@ def campaign(own: Monitor, start: MonitorState, epochs: Log, value: np.ndarray) 
     parts = [jnp.asarray(value[i : i + TOGETHER]) for i in range(0, len(value), TOGETHER)]
     jax.block_until_ready(together(own, start, parts[0]))
     begin = perf_counter()
-    told = [jax.block_until_ready(together(own, start, part)) for part in parts]
+    result = [jax.block_until_ready(together(own, start, part)) for part in parts]
     took = perf_counter() - begin
-    innovation, flagged = (np.concatenate([np.asarray(x) for x in xs]) for xs in zip(*told, strict=True))
+    innovation, flagged = (np.concatenate([np.asarray(x) for x in xs]) for xs in zip(*result, strict=True))
     return took, innovation, flagged
 
 
@@ -100,10 +100,10 @@ def main() -> int:
     ours, innovation, flagged = campaign(own, start, part, value)
     belief = jax.tree.map(np.asarray, start.residual)
     begin = perf_counter()
-    told = [navigate(belief, part.block, one, LIMIT) for one in value[:PEERS]]
+    result = [navigate(belief, part.block, one, LIMIT) for one in value[:PEERS]]
     peer = (perf_counter() - begin) / PEERS
-    apart = max(np.abs(innovation[i] - one).max() for i, (one, _) in enumerate(told))
-    same = all((flagged[i] == out).all() for i, (_, out) in enumerate(told))
+    apart = max(np.abs(innovation[i] - one).max() for i, (one, _) in enumerate(result))
+    same = all((flagged[i] == out).all() for i, (_, out) in enumerate(result))
     print(f"\n{'one run of ' + str(EPOCHS) + ' epochs':36}{'ms':>9}{'of 1000, s':>12}")
     for name, took in (("sensorfault, in a campaign", ours / RUNS), ("NumPy, row by row", peer)):
         print(f"{name:36}{took * 1e3:9.2f}{took * 1e3:12.2f}")

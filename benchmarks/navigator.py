@@ -91,7 +91,7 @@ def navigate(belief: Any, block: Any, value: np.ndarray, limit: float) -> tuple[
     nav, p = tuple(belief.nav), belief.cov
     own = [belief.own.gyro, belief.own.force, float(belief.own.clock), float(belief.own.drift)]
     per = -(-block.dt.shape[1] // PARTS)
-    told, flagged, refused = [], [], bool(belief.refused)
+    result, flagged, refused = [], [], bool(belief.refused)
     for k in range(len(value)):
         gyro, force, dt = block.gyro[k], block.force[k], block.dt[k]
         p = p * (DOUBT**2 if refused else 1.0)
@@ -104,7 +104,7 @@ def navigate(belief: Any, block: Any, value: np.ndarray, limit: float) -> tuple[
         expected, h, r = lines(nav[2], block.place[k], own[2])
         z = value[k] - expected
         out = left_out(z, h @ p @ h.T + np.diag(r), limit)
-        told.append(z)
+        result.append(z)
         flagged.append(out)
         still_over = np.abs(z) / np.sqrt(np.diag(h @ p @ h.T) + r) > limit
         taken = ~out & ~still_over
@@ -120,4 +120,4 @@ def navigate(belief: Any, block: Any, value: np.ndarray, limit: float) -> tuple[
         nav = (1.5 * c - 0.5 * (c @ (c.T @ c)), nav[1] - x[3:6], nav[2] - x[6:9])
         own = [own[0] + x[9:12], own[1] + x[12:15], own[2] - x[15], own[3] - x[16]]
         refused = 2 * taken.sum() < len(taken)
-    return np.array(told), np.array(flagged)
+    return np.array(result), np.array(flagged)

@@ -57,19 +57,19 @@ def unseen() -> Log:
 
 
 FAULTS = (
-    Fault("short", "gyro", "x", 105.0, 0.0, 20.0, sigmas=True),
-    Fault("bias", "gyro", "z", 110.0, 5.0, 20.0, sigmas=True),
-    Fault("bias", "accelerometer", None, 120.0, 3.0, 20.0, sigmas=True),
+    Fault("spike", "gyro", "x", 105.0, 0.0, 20.0, sigmas=True),
+    Fault("offset", "gyro", "z", 110.0, 5.0, 20.0, sigmas=True),
+    Fault("offset", "accelerometer", None, 120.0, 3.0, 20.0, sigmas=True),
     Fault("drift", "accelerometer", "y", 128.0, 6.0, 10.0, sigmas=True),
-    Fault("jam", "gyro", "y", 140.0, 5.0),
-    Fault("jam", "accelerometer", None, 148.0, 4.0),
+    Fault("frozen", "gyro", "y", 140.0, 5.0),
+    Fault("frozen", "accelerometer", None, 148.0, 4.0),
     Fault("noise", "accelerometer", "x", 156.0, 5.0, 20.0, sigmas=True),
-    Fault("miss", "gyro", None, 165.0, 3.0),
-    Fault("miss", "accelerometer", "z", 171.0, 2.0),
+    Fault("missing", "gyro", None, 165.0, 3.0),
+    Fault("missing", "accelerometer", "z", 171.0, 2.0),
     Fault("scale", "accelerometer", "z", 176.0, 4.0, 5.0),
     Fault("delay", "gyro", "z", 183.0, 4.0, 1.0),
-    Fault("miss", "gnss", None, 190.0, 3.0),
-    Fault("bias", "gyro", "x", 197.0, 10.0, 20.0, sigmas=True),  # outlasts the log
+    Fault("missing", "gnss", None, 190.0, 3.0),
+    Fault("offset", "gyro", "x", 197.0, 10.0, 20.0, sigmas=True),  # outlasts the log
 )
 
 

@@ -21,7 +21,7 @@ def healthy() -> Mission:
     return sail(900.0, seed=4, surface_s=np.inf)
 
 
-def deaf(log: Log, filter: Filter = Filter(q=0.1)) -> Monitor:  # noqa: B008
+def uncalibrated(log: Log, filter: Filter = Filter(q=0.1)) -> Monitor:  # noqa: B008
     return monitor(log, cubature(log, followed("test", log), filter))
 
 

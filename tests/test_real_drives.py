@@ -80,7 +80,7 @@ def in_an_alarm(known: Drive, outcome: Outcome) -> bool:
     return any(first <= outcome.fault.end_s and outcome.fault.start_s <= last for first, last in near)
 
 
-def told(outcome: Outcome) -> str:
+def result(outcome: Outcome) -> str:
     fault, named = outcome.fault, outcome.named
     said = "nothing" if named is None else f"{named.kind} on {named.sensor}.{named.channel}"
     return f"{fault.kind} on {fault.where} at {fault.start_s:.2f} s: {said}"
@@ -90,26 +90,26 @@ def told(outcome: Outcome) -> str:
 @pytest.mark.parametrize("name", DRIVES)
 def test_shorts_and_offsets_are_found_and_named(name: str, seed: int, real_data: Path) -> None:
     known = drive(real_data / "road" / name)
-    wanted = [Fault("short", *where, 0.0, 0.0, 20.0, sigmas=True) for where in IMU]
-    wanted += [Fault("bias", *where, 0.0, 4.0, 20.0, sigmas=True) for where in IMU]
+    wanted = [Fault("spike", *where, 0.0, 0.0, 20.0, sigmas=True) for where in IMU]
+    wanted += [Fault("offset", *where, 0.0, 4.0, 20.0, sigmas=True) for where in IMU]
     outcomes, _ = lies(known, wanted, seed)
-    right = {told(o): o.sensor_right and o.channel_right and o.kind_right for o in outcomes}
+    right = {result(o): o.sensor_right and o.channel_right and o.kind_right for o in outcomes}
     print(f"{name}: {sum(right.values())} of {len(right)} offsets found and named; not:")
     print(*(f"  {words}" for words, ok in right.items() if not ok), sep="\n")
     asked = [o for o in outcomes if (o.fault.sensor, o.fault.channel) not in FAINT[name] and not in_an_alarm(known, o)]
     assert len(asked) >= 7
-    assert [told(o) for o in asked if not right[told(o)]] == []
+    assert [result(o) for o in asked if not right[result(o)]] == []
     assert max(o.delay_s for o in asked) <= 0.5
 
 
 @pytest.mark.parametrize("name", DRIVES)
 def test_jams_are_found_and_named(name: str, real_data: Path) -> None:
     known = drive(real_data / "road" / name)
-    outcomes, found = lies(known, [Fault("jam", *where, 0.0, 4.0) for where in IMU], 0)
-    wrong = [told(o) for o in outcomes if not (o.sensor_right and o.channel_right and o.kind_right)]
+    outcomes, found = lies(known, [Fault("frozen", *where, 0.0, 4.0) for where in IMU], 0)
+    wrong = [result(o) for o in outcomes if not (o.sensor_right and o.channel_right and o.kind_right)]
     assert not wrong
     assert max(o.delay_s for o in outcomes) <= 0.5
-    jams = {(event.sensor, event.channel) for one in found for event in one.events if event.kind == "jam"}
+    jams = {(event.sensor, event.channel) for one in found for event in one.events if event.kind == "frozen"}
     assert jams == set(IMU)
 
 
@@ -117,9 +117,9 @@ def test_jams_are_found_and_named(name: str, real_data: Path) -> None:
 def test_silences_are_found_and_named(name: str, real_data: Path) -> None:
     known = drive(real_data / "road" / name)
     outcomes, _ = lies(
-        known, [Fault("miss", sensor, None, 0.0, 3.0) for sensor in ("gyro", "gnss", "accelerometer")], 0
+        known, [Fault("missing", sensor, None, 0.0, 3.0) for sensor in ("gyro", "gnss", "accelerometer")], 0
     )
-    wrong = [told(o) for o in outcomes if not (o.sensor_right and o.channel_right and o.kind_right)]
+    wrong = [result(o) for o in outcomes if not (o.sensor_right and o.channel_right and o.kind_right)]
     assert not wrong
     period = {sensor.name: sensor.period_s for sensor in known.model.sensors}
     assert all(o.delay_s <= 5 * period[o.fault.sensor] for o in outcomes)
@@ -130,7 +130,7 @@ def test_false_alarms_on_the_untouched_rest(name: str, method: str, real_data: P
     known = drive(real_data / "road" / name, method)
     hours = known.rest.duration_s / 3600
     # The IMU of drive 0708 outlives the last fix by 2.8 s: that silence is so.
-    alarms = [event for event in known.clean.events if event.kind != "miss" or event.end_s is not None]
+    alarms = [event for event in known.clean.events if event.kind != "missing" or event.end_s is not None]
     print(f"{name}, {method}: {len(alarms)} false alarms in {60 * hours:.1f} min, {len(alarms) / hours:.0f} an hour")
     assert len(alarms) / hours <= ALARMS_AN_HOUR[name, method]
 
@@ -143,7 +143,7 @@ def test_held_fixes_are_never_a_jam(real_data: Path) -> None:
     assert any("gnss" in name for name in held)
     for part in (log, known.rest):  # the part fitted on, too
         events = detect(known.model, part).events
-        assert not [event for event in events if event.sensor in held and event.kind != "miss"]
+        assert not [event for event in events if event.sensor in held and event.kind != "missing"]
 
 
 def test_the_command_line_names_an_offset_and_nobody_else(
@@ -162,8 +162,8 @@ def test_the_command_line_names_an_offset_and_nobody_else(
     model, faulty = str(tmp_path / "car.sensorfault"), str(tmp_path / "faulty.csv")
     run("fit", str(folder), "--until", f"{cut - 1e-3:.6f}", "--held-out", "0", "--out", model)
     start = round(cut) + 20
-    run("inject", str(folder), "--fault", f"bias:gyro.z:{start}:5:20sigma", "--out", faulty)
+    run("inject", str(folder), "--fault", f"offset:gyro.z:{start}:5:20sigma", "--out", faulty)
     events = json.loads(run("detect", faulty, "--model", model, "--json", "-"))["events"]
     late = [event for event in events if event["start_s"] >= cut]
-    assert [(event["sensor"], event["channel"], event["kind"]) for event in late] == [("gyro", "z", "bias")] * 2
+    assert [(event["sensor"], event["channel"], event["kind"]) for event in late] == [("gyro", "z", "offset")] * 2
     assert [event["start_s"] for event in late] == pytest.approx([start, start + 5], abs=0.1)

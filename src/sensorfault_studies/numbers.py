@@ -32,12 +32,12 @@ class Numbers:
         self,
         condition: str,
         method: str,
-        told: Mapping[str, float],
+        result: Mapping[str, float],
         fault: str | None = None,
         size: float | None = None,
     ) -> None:
         """One more seed's numbers, by metric."""
-        for metric, value in told.items():
+        for metric, value in result.items():
             self.values.setdefault(Key(condition, method, fault, size, metric), []).append(float(value))
 
     def mean(

@@ -19,7 +19,7 @@ def page(study: Study, findings: Findings, facts: str) -> str:
     """
     from plotly.offline import get_plotlyjs
 
-    here, shared = files("sensorfault_studies"), files("sensorfault.evaluation")
+    here, shared = files("sensorfault_studies"), files("sensorfault.report")
     codes = [code for code, _ in grouped(findings.rows, lambda row: row.experiment)]
     home = {figure.name: _home(figure, codes) for figure in findings.figures}
     sections = [

@@ -12,7 +12,7 @@ SOURCES = {"real": "real logs", "injected": "real logs with injected faults", "s
 PAPER = "paper"
 NONE = "–"
 _WIDE = 10  # more magnitudes than so many go down instead of across
-_SCALE = {"short": "σ", "jam": "s", "miss": "s"}
+_SCALE = {"spike": "σ", "frozen": "s", "missing": "s"}
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -100,14 +100,14 @@ def _table(
     shown = [i for i in range(4) if order[i] != [""]]
     papers = {across(row) for row in rows if row.paper is not None}
     columns = [(head, paper) for head in heads for paper in ((False, True) if head in papers else (False,))]
-    told = []
+    result = []
     for key, line in lines:
         at = {across(row): row for row in line}
         cells = tuple(Cell() if head not in at else (printed if paper else ours)(at[head]) for head, paper in columns)
-        told.append((tuple(key[i] for i in shown), cells))
+        result.append((tuple(key[i] for i in shown), cells))
     labels = tuple(names[i] for i in shown)
     return Table(
-        title, SOURCES[source], labels, tuple(PAPER if paper else head for head, paper in columns), tuple(told)
+        title, SOURCES[source], labels, tuple(PAPER if paper else head for head, paper in columns), tuple(result)
     )
 
 

@@ -15,14 +15,14 @@ from sensorfault.logs.table import Log
 from sensorfault.methods.fit import fit
 from sensorfault.simulation.road import drive
 
-CALLED = {"short": "spike", "bias": "offset", "jam": "frozen"}
+CALLED = {"spike": "spike", "offset": "offset", "frozen": "frozen"}
 FAULTS = (
-    Fault("short", "gyro", "x", 10.0, 0.0, 50.0, sigmas=True),
-    Fault("short", "gyro", "x", 10.5, 0.0, -50.0, sigmas=True),
-    Fault("short", "accelerometer", "z", 20.0, 0.0, 50.0, sigmas=True),
-    Fault("bias", "gyro", "z", 30.0, 5.0, 50.0, sigmas=True),
-    Fault("jam", "accelerometer", "y", 50.0, 3.0),
-    Fault("bias", "accelerometer", None, 70.0, 4.0, -50.0, sigmas=True),
+    Fault("spike", "gyro", "x", 10.0, 0.0, 50.0, sigmas=True),
+    Fault("spike", "gyro", "x", 10.5, 0.0, -50.0, sigmas=True),
+    Fault("spike", "accelerometer", "z", 20.0, 0.0, 50.0, sigmas=True),
+    Fault("offset", "gyro", "z", 30.0, 5.0, 50.0, sigmas=True),
+    Fault("frozen", "accelerometer", "y", 50.0, 3.0),
+    Fault("offset", "accelerometer", None, 70.0, 4.0, -50.0, sigmas=True),
 )
 
 
@@ -72,7 +72,7 @@ def test_an_offset_that_outlasts_the_log() -> None:
     assert (found[0].start_s, found[0].end_s) == (log.time[4000], log.time[-1])
 
 
-@pytest.mark.parametrize("log", [healthy(), healthy().between(end_s=6.0), simulated()], ids=["rig", "short", "road"])
+@pytest.mark.parametrize("log", [healthy(), healthy().between(end_s=6.0), simulated()], ids=["rig", "spike", "road"])
 def test_health_is_left_as_it_is(log: Log) -> None:
     same, found = leave_out(log)
     assert found == ()
@@ -149,10 +149,10 @@ def test_fit_leaves_them_out_and_says_so() -> None:
     clean = fit(healthy(), "elm-autoencoder", held_out=0.0)
     lying = inject(healthy(), FAULTS)
     model = fit(lying.log, "elm-autoencoder", held_out=0.0)
-    told = model.summary["training_suspects"]
+    result = model.summary["training_suspects"]
     assert clean.summary["training_suspects"] == []
-    assert len(told) == 8
-    assert set(told[0]) == {"start_s", "end_s", "channel", "reason"}
+    assert len(result) == 8
+    assert set(result[0]) == {"start_s", "end_s", "channel", "reason"}
     limit, healthy_limit = (float(m.monitor.branches[0].threshold.largest[0]) for m in (model, clean))
     assert limit == pytest.approx(healthy_limit, rel=0.2)
 

@@ -30,11 +30,11 @@ def test_a_density_of_nothing_limits_nothing() -> None:
 def test_the_quantile_is_passed_by_the_share_asked_for() -> None:
     runs = [np.random.default_rng(seed).standard_normal(200) for seed in range(100)]
     runs[0][::2] = np.nan
-    told = calibrated(runs, 0.01, seed=1)
+    result = calibrated(runs, 0.01, seed=1)
     pooled = np.concatenate(runs)
-    assert np.nansum(pooled > told.limit) == int(0.01 * np.isfinite(pooled).sum())
-    assert told.low < told.limit < told.high
-    assert told == calibrated(runs, 0.01, seed=1)
+    assert np.nansum(pooled > result.limit) == int(0.01 * np.isfinite(pooled).sum())
+    assert result.low < result.limit < result.high
+    assert result == calibrated(runs, 0.01, seed=1)
 
 
 def test_epochs_of_one_run_are_hardly_more_than_one() -> None:
@@ -44,8 +44,8 @@ def test_epochs_of_one_run_are_hardly_more_than_one() -> None:
     for seed in range(20):
         rng = np.random.default_rng(seed)
         level = rng.standard_normal(60)
-        told = calibrated([x + 0.1 * rng.standard_normal(50) for x in level], 0.1, seed)
-        held += told.low <= truth <= told.high
+        result = calibrated([x + 0.1 * rng.standard_normal(50) for x in level], 0.1, seed)
+        held += result.low <= truth <= result.high
     assert 14 <= held <= 20
 
 

@@ -12,11 +12,11 @@ PERIOD_S = 0.02
 
 def runs(same: np.ndarray) -> np.ndarray:
     """Lengths of the current runs of True, by counting."""
-    length, told = np.zeros(same.shape[1]), []
+    length, result = np.zeros(same.shape[1]), []
     for row in same:
         length = np.where(row, length + 1, 0.0)
-        told.append(length)
-    return np.array(told)
+        result.append(length)
+    return np.array(result)
 
 
 @pytest.mark.parametrize("p", [0.02, 0.1, 0.3, 0.6])

@@ -19,11 +19,11 @@ def healthy(seed: int) -> np.ndarray:
 
 def test_each_window_passes_a_limit_as_often_as_the_others() -> None:
     plain = windows((1.0, 10.0, 40.0), 1.0, 60.0, C)
-    told = healthy(1)
-    tape = mean_tape(plain, told, 1.0)
+    result = healthy(1)
+    tape = mean_tape(plain, result, 1.0)
     assert tape.shape == (ROWS, C, 3)
-    np.testing.assert_array_equal(np.isnan(tape), np.repeat(np.isnan(told)[..., None], 3, axis=2))
-    np.testing.assert_allclose(tape[500, :, 1], np.nanmean(told[491:501], axis=0) + 0 * told[500])
+    np.testing.assert_array_equal(np.isnan(tape), np.repeat(np.isnan(result)[..., None], 3, axis=2))
+    np.testing.assert_allclose(tape[500, :, 1], np.nanmean(result[491:501], axis=0) + 0 * result[500])
     fitted = fit_spread(plain, tape.reshape(-1, 3))
     spread = np.asarray(fitted.spread)
     assert spread[2] > 1.5 * spread[0] / np.sqrt(40.0)  # white noise would be 6.3 times narrower

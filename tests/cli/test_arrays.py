@@ -24,5 +24,5 @@ def test_init_detect_and_report_on_a_folder_of_arrays(run: Run) -> None:
     assert 'path = "IMU__gyro__t.npy"' in (folder / "vehicle.toml").read_text()
     said = run("detect", folder, "--method", "pca", "--json", "-", "--report", "page.html")
     events = json.loads(said.out)["events"]
-    assert [(event["sensor"], event["channel"], event["kind"]) for event in events] == [("gyro", "y", "jam")]
+    assert [(event["sensor"], event["channel"], event["kind"]) for event in events] == [("gyro", "y", "frozen")]
     assert "<title>drive</title>" in Path("page.html").read_text()

@@ -73,9 +73,9 @@ def test_bad_logs(what: str, verb: str, run: Run, drive: Path, described: Path, 
     damage, words = BAD_LOGS[what]
     damage(drive)
     before = listing(tmp_path)
-    told = refusal(run(verb, drive, "--vehicle", described))
-    assert told.endswith(".")
-    assert all(word in told for word in words), told
+    result = refusal(run(verb, drive, "--vehicle", described))
+    assert result.endswith(".")
+    assert all(word in result for word in words), result
     assert listing(tmp_path) == before
 
 
@@ -102,7 +102,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "unknown log": ("detect", "nowhere.csv"),
     "unknown log for init": ("init", "nowhere.csv"),
     "unknown log for fit": ("fit", "nowhere.csv"),
-    "unknown log for inject": ("inject", "nowhere.csv", "--fault", "miss:gyro:1:1", "--out", "x.csv"),
+    "unknown log for inject": ("inject", "nowhere.csv", "--fault", "missing:gyro:1:1", "--out", "x.csv"),
     "unknown folder": ("detect", "no/where"),
     "a folder without logs": ("detect", "empty"),
     "a log of another kind": ("detect", "notes.pdf"),
@@ -116,14 +116,14 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "unknown method for fit": ("fit", "drive.csv", "--method", "lstm"),
     "unknown method for demo": ("demo", "--method", "lstm"),
     "unknown fault": ("inject", "drive.csv", "--fault", "melt:gyro:1:1", "--out", "x.csv"),
-    "unknown sensor": ("inject", "drive.csv", "--fault", "miss:radar:1:1", "--out", "x.csv"),
-    "unknown channel": ("inject", "drive.csv", "--fault", "jam:gyro.w:1:1", "--out", "x.csv"),
-    "a fault of too few parts": ("inject", "drive.csv", "--fault", "jam", "--out", "x.csv"),
-    "a fault beyond the log": ("inject", "drive.csv", "--fault", "jam:gyro:1000:1", "--out", "x.csv"),
-    "a fault without a size": ("inject", "drive.csv", "--fault", "bias:gyro:1:1", "--out", "x.csv"),
+    "unknown sensor": ("inject", "drive.csv", "--fault", "missing:radar:1:1", "--out", "x.csv"),
+    "unknown channel": ("inject", "drive.csv", "--fault", "frozen:gyro.w:1:1", "--out", "x.csv"),
+    "a fault of too few parts": ("inject", "drive.csv", "--fault", "frozen", "--out", "x.csv"),
+    "a fault beyond the log": ("inject", "drive.csv", "--fault", "frozen:gyro:1000:1", "--out", "x.csv"),
+    "a fault without a size": ("inject", "drive.csv", "--fault", "offset:gyro:1:1", "--out", "x.csv"),
     "no fault": ("inject", "drive.csv", "--out", "x.csv"),
-    "no output": ("inject", "drive.csv", "--fault", "miss:gyro:1:1"),
-    "an output of another kind": ("inject", "drive.csv", "--fault", "miss:gyro:1:1", "--out", "x.xls"),
+    "no output": ("inject", "drive.csv", "--fault", "missing:gyro:1:1"),
+    "an output of another kind": ("inject", "drive.csv", "--fault", "missing:gyro:1:1", "--out", "x.xls"),
     "unknown truth": ("evaluate", "drive.csv", "--truth", "nowhere.json"),
     "a truth that is none": ("evaluate", "drive.csv", "--truth", "drive.csv"),
     "a truth of other keys": ("report", "drive.csv", "--truth", "odd.json"),
@@ -138,7 +138,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "until before the beginning": ("fit", "drive.csv", "--until", "-5"),
     "faults longer than the log": ("evaluate", "drive.csv", "--model", "car.sensorfault", "--duration", "500"),
     "no folder for the model": ("fit", "drive.csv", "--out", "no/where/car.sensorfault"),
-    "no folder for the log": ("inject", "drive.csv", "--fault", "miss:gyro:1:1", "--out", "no/where/x.csv"),
+    "no folder for the log": ("inject", "drive.csv", "--fault", "missing:gyro:1:1", "--out", "no/where/x.csv"),
     "no folder for the page": ("report", "drive.csv", "--model", "car.sensorfault", "--out", "no/where/x.html"),
     "no folder for the vehicle file": ("init", "drive.csv", "--out", "no/where/vehicle.toml"),
     "no folder for JSON": ("methods", "--json", "no/where/methods.json"),
@@ -161,11 +161,11 @@ def test_bad_commands(case: str, run: Run, drive: Path, car: Path, tmp_path: Pat
     refusal_ = run(*COMMANDS[case])
     if case in ("a folder for JSON", "no folder for JSON"):  # the table stands already when the file cannot be written
         refusal_ = Said(refusal_.code, "", refusal_.err)
-    told = refusal(refusal_)
+    result = refusal(refusal_)
     assert listing(tmp_path) == before, "a file appeared or changed"
     for word in COMMANDS[case][1:]:  # what was wrong is named
         if word.startswith("no") and "." in word:
-            assert Path(word).name.split(".")[0] in told, told
+            assert Path(word).name.split(".")[0] in result, result
 
 
 def test_existing_answers_survive_a_failure(run: Run, drive: Path, described: Path, tmp_path: Path) -> None:
@@ -180,7 +180,7 @@ def test_existing_answers_survive_a_failure(run: Run, drive: Path, described: Pa
         ("detect", drive, "--report", "page.html", "--json", "found.json"),
         ("evaluate", drive, "--json", "found.json"),
         ("report", drive, "--out", "page.html"),
-        ("inject", drive, "--fault", "miss:gyro:1:1", "--out", "faulty.csv", "--json", "found.json"),
+        ("inject", drive, "--fault", "missing:gyro:1:1", "--out", "faulty.csv", "--json", "found.json"),
     ):
         refusal(run(*words, "--vehicle", described))
         assert listing(tmp_path) == before

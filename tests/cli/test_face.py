@@ -37,16 +37,16 @@ def test_the_verbs_are_those_of_the_issue() -> None:
 
 @pytest.mark.parametrize("verb", VERBS)
 def test_help_says_what_a_verb_takes(verb: str) -> None:
-    told = CliRunner().invoke(cli, [verb, "--help"])
-    assert told.exit_code == 0
+    result = CliRunner().invoke(cli, [verb, "--help"])
+    assert result.exit_code == 0
     command = cli.commands[verb]
     assert command.help
-    assert " ".join(command.help.split("\n\n")[0].split()) in " ".join(told.output.split())
+    assert " ".join(command.help.split("\n\n")[0].split()) in " ".join(result.output.split())
     options = {name for param in command.params if isinstance(param, click.Option) for name in param.opts}
-    assert all(name in told.output for name in options)
+    assert all(name in result.output for name in options)
     assert OPTIONS.get(verb, set()) <= options
     arguments = [param for param in command.params if isinstance(param, click.Argument)]
-    assert all(argument.make_metavar(click.Context(command)) in told.output for argument in arguments)
+    assert all(argument.make_metavar(click.Context(command)) in result.output for argument in arguments)
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -58,10 +58,10 @@ def test_every_option_says_what_it_is_for(verb: str) -> None:
 
 
 def test_help_lists_every_verb() -> None:
-    told = CliRunner().invoke(cli, ["--help"])
-    assert told.exit_code == 0
-    assert all(re.search(rf"^  {verb} ", told.output, re.MULTILINE) for verb in VERBS)
-    assert CliRunner().invoke(cli, ["-h"]).output == told.output
+    result = CliRunner().invoke(cli, ["--help"])
+    assert result.exit_code == 0
+    assert all(re.search(rf"^  {verb} ", result.output, re.MULTILINE) for verb in VERBS)
+    assert CliRunner().invoke(cli, ["-h"]).output == result.output
 
 
 def test_help_and_version_import_nothing_slow() -> None:
@@ -112,14 +112,14 @@ def test_the_commands_of_the_readme_are_commands() -> None:
 def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     """On a drive of 150 s whose gyro is stuck for three of the last thirty; by itself, as a reader would run it."""
     healthy = fitted.rig().between(end_s=150.0)
-    log = inject(healthy, [Fault("jam", "gyro", "y", 130.0, 3.0)]).log
+    log = inject(healthy, [Fault("frozen", "gyro", "y", 130.0, 3.0)]).log
     write_csv(tmp_path / "drive.csv", log)
     (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     code = f"values = {log.value[6001].tolist()}\n" + code
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     said = done.stdout.splitlines()
-    assert any(line.split()[1:] == ["gyro", "y", "jam"] for line in said)
+    assert any(line.split()[1:] == ["gyro", "y", "frozen"] for line in said)
     assert said[-1].split()[0] in ("ok", "unknown", "fault")
 
 

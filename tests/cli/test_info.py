@@ -23,16 +23,16 @@ def test_what_a_log_holds(run: Run, tmp_path: Path) -> None:
     said = run("info", "flight.ulg", "--json", "info.json")
     assert said.code == 0, said.err
     assert "breaks off inside a message at byte" in said.err
-    told = json.loads((tmp_path / "info.json").read_text())
-    assert told["damage"][0].startswith("flight.ulg: the file breaks off")
-    sensors = {sensor["name"]: sensor for sensor in told["sensors"]}
+    result = json.loads((tmp_path / "info.json").read_text())
+    assert result["damage"][0].startswith("flight.ulg: the file breaks off")
+    sensors = {sensor["name"]: sensor for sensor in result["sensors"]}
     assert sensors["barometer"]["rate_hz"] == pytest.approx(10)
     assert sensors["gyro"]["gaps"] == 0
-    assert told["duration_s"] == pytest.approx(9.98, abs=0.03)
-    assert "slope" in told["applies"]
-    assert "two joints" in told["does_not_apply"]["arm-kalman"]
-    assert set(told["applies"]) | set(told["does_not_apply"]) == set(METHODS)
-    assert "drone" in told["applies"]
+    assert result["duration_s"] == pytest.approx(9.98, abs=0.03)
+    assert "slope" in result["applies"]
+    assert "two joints" in result["does_not_apply"]["arm-kalman"]
+    assert set(result["applies"]) | set(result["does_not_apply"]) == set(METHODS)
+    assert "drone" in result["applies"]
     assert "arm-kalman" in said.out
 
 
@@ -58,8 +58,8 @@ def test_a_real_stock_log_from_init_to_detect(run: Run, real_data: Path, tmp_pat
     assert said.code == 0, said.err
     assert "guesses" not in said.err
     assert run("detect", path, "--model", "model.sensorfault").code == 0
-    told = run("info", path, "--json", "-")
-    assert "relative-conditioning" in json.loads(told.out)["applies"]
+    result = run("info", path, "--json", "-")
+    assert "relative-conditioning" in json.loads(result.out)["applies"]
 
 
 def test_gaps_and_holds_of_a_sensor() -> None:
@@ -132,8 +132,8 @@ def test_info_of_a_recording(run: Run, tmp_path: Path) -> None:
 
 def test_a_reason_is_said_once_for_all_methods_that_it_holds_against(run: Run, tmp_path: Path) -> None:
     mcap(tmp_path / "drive.mcap")
-    told = run("info", "drive.mcap", "--json", "info.json")
+    result = run("info", "drive.mcap", "--json", "info.json")
     reasons = list(json.loads((tmp_path / "info.json").read_text())["does_not_apply"].values())
     assert len(set(reasons)) < len(reasons)
     for reason in set(reasons):
-        assert told.out.count(f"no: {reason[:60]}") == len({one for one in reasons if one[:60] == reason[:60]})
+        assert result.out.count(f"no: {reason[:60]}") == len({one for one in reasons if one[:60] == reason[:60]})

@@ -9,7 +9,7 @@ from cli.conftest import Run, Said
 from sensorfault.methods.catalog import METHODS
 
 KEYS = {"start_s", "end_s", "subject", "sensor", "channel", "kind", "peak_score", "limit", "method"}
-FAULTS = ("short:gyro.x:61:0:30sigma", "bias:gyro.z:64:3:20sigma", "jam:accelerometer.x:70:3", "miss:gyro:76:2")
+FAULTS = ("spike:gyro.x:61:0:30sigma", "offset:gyro.z:64:3:20sigma", "frozen:accelerometer.x:70:3", "missing:gyro:76:2")
 
 
 def injected(run: Run, drive: Path) -> Said:
@@ -33,15 +33,15 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
     said = run("fit", drive, "--until", 60, "--out", "car.sensorfault", "--json", "fit.json")
     assert said.code == 0, said.err
     assert "False alarms: 0 in the 18 s held out" in said.err
-    told = json.loads((tmp_path / "fit.json").read_text())
-    assert told["method"] == "relative-conditioning"
-    assert told["alarms_per_hour"] == 0
-    assert len(told["watched"]) == 6
+    result = json.loads((tmp_path / "fit.json").read_text())
+    assert result["method"] == "relative-conditioning"
+    assert result["alarms_per_hour"] == 0
+    assert len(result["watched"]) == 6
 
     # inject
-    told = json.loads(injected(run, drive).out)
-    assert [fault["kind"] for fault in told["truth"]] == ["short", "bias", "jam", "miss"]
-    assert json.loads((tmp_path / "bad.truth.json").read_text()) == told["truth"]
+    result = json.loads(injected(run, drive).out)
+    assert [fault["kind"] for fault in result["truth"]] == ["spike", "offset", "frozen", "missing"]
+    assert json.loads((tmp_path / "bad.truth.json").read_text()) == result["truth"]
 
     # detect, into a file and to standard output
     said = run("detect", "bad.csv", "--model", "car.sensorfault", "--json", "found.json", "--report", "page.html")
@@ -52,7 +52,7 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
     assert found == json.loads((tmp_path / "found.json").read_text())
     assert "1:04.00" in again.err  # the table makes room
     assert all(set(event) == KEYS for event in found["events"])
-    for fault in told["truth"]:
+    for fault in result["truth"]:
         during = [e for e in found["events"] if fault["start_s"] <= e["start_s"] <= fault["start_s"] + 1]
         assert (fault["sensor"], fault["channel"], fault["kind"]) in [
             (event["sensor"], event["channel"], event["kind"]) for event in during
@@ -64,10 +64,10 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
     # evaluate
     said = run("evaluate", "bad.csv", "--model", "car.sensorfault", "--truth", "bad.truth.json", "--json", "-")
     assert said.code == 0, said.err
-    told = json.loads(said.out)
-    assert [outcome["found"] for outcome in told["outcomes"]] == [True] * 4
-    assert [outcome["sensor_right"] for outcome in told["outcomes"]] == [True] * 4
-    assert told["false_alarms_per_hour"] == 0
+    result = json.loads(said.out)
+    assert [outcome["found"] for outcome in result["outcomes"]] == [True] * 4
+    assert [outcome["sensor_right"] for outcome in result["outcomes"]] == [True] * 4
+    assert result["false_alarms_per_hour"] == 0
     assert "False alarms where nothing was injected: 0" in said.err
 
     # report
@@ -88,11 +88,11 @@ def test_detect_without_a_model_says_what_that_means(run: Run, drive: Path) -> N
     assert f"No model was given: {said_of}" in said.err
     assert "taken as healthy" in said.err
     assert "the false-alarm rate is not known" in said.err
-    told = json.loads(said.out)
-    assert told["events"] == []
-    assert told["fitted_on_s"] == [0.0, pytest.approx(39.99)]
-    assert told["judged_s"][0] >= told["fitted_on_s"][1]
-    assert told["log"] == "drive"
+    result = json.loads(said.out)
+    assert result["events"] == []
+    assert result["fitted_on_s"] == [0.0, pytest.approx(39.99)]
+    assert result["judged_s"][0] >= result["fitted_on_s"][1]
+    assert result["log"] == "drive"
 
 
 def test_detect_says_that_columns_were_guessed(run: Run, drive: Path, car: Path) -> None:
@@ -109,18 +109,21 @@ def test_detect_says_that_columns_were_guessed(run: Run, drive: Path, car: Path)
 def test_evaluate_without_a_truth_injects_one(run: Run, drive: Path, car: Path) -> None:
     said = run("evaluate", drive, "--model", car, "--duration", 2, "--repeats", 1, "--json", "-")
     assert said.code == 0, said.err
-    told = json.loads(said.out)
-    assert {cell["kind"] for cell in told["cells"]} == {
-        *("short", "bias", "drift", "jam", "miss", "noise", "scale", "delay"),
+    result = json.loads(said.out)
+    assert {cell["kind"] for cell in result["cells"]} == {
+        *("spike", "offset", "drift", "frozen", "missing", "noise", "scale", "delay"),
     }
-    assert told["false_alarms_per_hour"] == 0
-    assert told["healthy_hours"] == pytest.approx(80 / 3600, rel=0.01)
-    assert 0.5 < told["auc"] <= 1
-    assert set(told["isolation"]) <= {"gyro", "accelerometer", "east_m", "north_m", "gnss"}
+    assert result["false_alarms_per_hour"] == 0
+    assert result["healthy_hours"] == pytest.approx(80 / 3600, rel=0.01)
+    assert 0.5 < result["auc"] <= 1
+    assert set(result["isolation"]) <= {"gyro", "accelerometer", "east_m", "north_m", "gnss"}
 
 
 def test_evaluate_leaves_out_faults_in_the_part_fitted_on(run: Run, drive: Path) -> None:
-    assert run("inject", drive, "--fault", "miss:gyro:20:2", "--fault", "miss:gyro:60:2", "--out", "bad.csv").code == 0
+    assert (
+        run("inject", drive, "--fault", "missing:gyro:20:2", "--fault", "missing:gyro:60:2", "--out", "bad.csv").code
+        == 0
+    )
     said = run("evaluate", "bad.csv", "--truth", "bad.truth.json", "--json", "-")
     assert said.code == 0, said.err
     assert "1 faults lie in the part that was fitted on" in said.err
@@ -129,7 +132,7 @@ def test_evaluate_leaves_out_faults_in_the_part_fitted_on(run: Run, drive: Path)
 
 def test_faults_in_the_training_data_are_named_and_left_out(run: Run, drive: Path, tmp_path: Path) -> None:
     faults = [
-        word for fault in ("short:gyro.x:20:0:200sigma", "jam:accelerometer.y:30:3") for word in ("--fault", fault)
+        word for fault in ("spike:gyro.x:20:0:200sigma", "frozen:accelerometer.y:30:3") for word in ("--fault", fault)
     ]
     assert run("inject", drive, *faults, "--out", "bad.csv").code == 0
     said = run("fit", "bad.csv", "--until", 60, "--out", "car.sensorfault", "--json", "fit.json")
@@ -138,17 +141,17 @@ def test_faults_in_the_training_data_are_named_and_left_out(run: Run, drive: Pat
         "Left out of the fit, since the training data look faulty there: spike on gyro.x, 0:20.00 to 0:20.00"
         in said.err
     )
-    told = json.loads((tmp_path / "fit.json").read_text())["training_suspects"]
-    assert [(one["channel"], one["reason"]) for one in told] == [("gyro.x", "spike"), ("accelerometer.y", "frozen")]
+    result = json.loads((tmp_path / "fit.json").read_text())["training_suspects"]
+    assert [(one["channel"], one["reason"]) for one in result] == [("gyro.x", "spike"), ("accelerometer.y", "frozen")]
 
 
 def test_the_catalog(run: Run) -> None:
     said = run("methods", "--json", "-")
     assert said.code == 0
     assert said.err == ""
-    told = json.loads(said.out)["methods"]
-    assert [method["name"] for method in told] == list(METHODS)
-    assert all(set(method) == {"name", "title", "source", "promise"} for method in told)
+    result = json.loads(said.out)["methods"]
+    assert [method["name"] for method in result] == list(METHODS)
+    assert all(set(method) == {"name", "title", "source", "promise"} for method in result)
     table = run("methods")
     assert "elm-autoencoder" in table.out
     assert "Min et al. 2021" in table.out
@@ -164,7 +167,7 @@ def test_the_other_method(run: Run, drive: Path, tmp_path: Path) -> None:
 
 def test_json_has_no_nan(run: Run, drive: Path, car: Path) -> None:
     """A miss has no AUC, an undetected fault no delay: null, as JSON knows no other."""
-    assert run("inject", drive, "--fault", "bias:gyro.x:70:1:0.001", "--out", "bad.csv").code == 0
+    assert run("inject", drive, "--fault", "offset:gyro.x:70:1:0.001", "--out", "bad.csv").code == 0
     said = run("evaluate", "bad.csv", "--model", car, "--truth", "bad.truth.json", "--json", "-")
     assert "NaN" not in said.out
     (outcome,) = json.loads(said.out)["outcomes"]
@@ -188,7 +191,7 @@ def test_a_flight_as_a_demo(run: Run, tmp_path: Path) -> None:
 
 
 def test_events_for_other_programs(run: Run, drive: Path, car: Path, tmp_path: Path) -> None:
-    assert run("inject", drive, "--fault", "bias:gyro.z:64:3:20sigma", "--out", "bad.csv").code == 0
+    assert run("inject", drive, "--fault", "offset:gyro.z:64:3:20sigma", "--out", "bad.csv").code == 0
     outs = ["events.jsonl", "events.csv", "events.mcap", "events.bag", "events_bag"]
     options = [word for out in outs for word in ("--out", out)]
     said = run("detect", "bad.csv", "--model", car, *options, "--json", "found.json")

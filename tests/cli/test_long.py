@@ -14,17 +14,17 @@ NUMBERS = "measurements", "rate_hz", "held", "missing"
 
 def test_by_parts_it_finds_the_same(run: Run, drive: Path, car: Path) -> None:
     assert run("init", drive).code == 0
-    run("inject", drive, "--fault", "bias:accelerometer.x:40:5:9", "--out", "lying.csv")
+    run("inject", drive, "--fault", "offset:accelerometer.x:40:5:9", "--out", "lying.csv")
     words = "detect", "lying.csv", "--model", car, "--json"
     whole = json.loads(run(*words, "-").out)
     said = run(*words, "-", "--by-parts", "--out", "events.jsonl")
-    told = json.loads(said.out)
+    result = json.loads(said.out)
     assert "read part by part" in said.err
-    assert [(e["sensor"], e["kind"]) for e in told["events"]] == [(e["sensor"], e["kind"]) for e in whole["events"]]
-    assert told["events"]
+    assert [(e["sensor"], e["kind"]) for e in result["events"]] == [(e["sensor"], e["kind"]) for e in whole["events"]]
+    assert result["events"]
     assert len(Path("events.jsonl").read_text().splitlines()) == len(whole["events"])
-    assert told["judged_s"] == pytest.approx(whole["judged_s"], abs=1e-6)
-    assert all(told[key] == whole[key] for key in whole.keys() - {"judged_s", "events"})
+    assert result["judged_s"] == pytest.approx(whole["judged_s"], abs=1e-6)
+    assert all(result[key] == whole[key] for key in whole.keys() - {"judged_s", "events"})
 
 
 def test_a_long_file_is_read_by_parts_where_it_can_be(
@@ -49,7 +49,7 @@ def test_by_parts_a_log_holds_the_same(run: Run, drive: Path, monkeypatch: pytes
 
 def test_a_page_by_parts(run: Run, drive: Path, car: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
-    run("inject", drive, "--fault", "bias:accelerometer.x:40:5:9", "--out", "lying.csv")
+    run("inject", drive, "--fault", "offset:accelerometer.x:40:5:9", "--out", "lying.csv")
     for verb, way in (("report", ()), ("detect", ("--report", "report.html"))):
         said = run(verb, "lying.csv", "--model", car, "--by-parts", *way)
         assert said.code == 0, said.err
@@ -61,13 +61,13 @@ def test_a_page_by_parts(run: Run, drive: Path, car: Path, monkeypatch: pytest.M
 
 def test_without_a_model_it_is_fitted_on_the_beginning(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
-    run("inject", drive, "--fault", "bias:accelerometer.x:60:5:9", "--out", "lying.csv")
+    run("inject", drive, "--fault", "offset:accelerometer.x:60:5:9", "--out", "lying.csv")
     said = run("detect", "lying.csv", "--by-parts", "--method", "pca", "--json", "-", "--report", "page.html")
     assert "pca was fitted on the log's own beginning, 0:00.00 to" in said.err
     assert "taken as healthy" in Path("page.html").read_text()
-    told = json.loads(said.out)
-    assert told["fitted_on_s"][1] == told["judged_s"][0] < 60
-    assert ("accelerometer", "bias") in [(event["sensor"], event["kind"]) for event in told["events"]]
+    result = json.loads(said.out)
+    assert result["fitted_on_s"][1] == result["judged_s"][0] < 60
+    assert ("accelerometer", "offset") in [(event["sensor"], event["kind"]) for event in result["events"]]
 
 
 def test_what_is_larger_than_memory_is_a_sentence(run: Run, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,14 +9,14 @@ from cli.conftest import Run
 
 def test_the_log_that_is_read_is_not_written_over(run: Run, drive: Path) -> None:
     before = drive.read_bytes()
-    assert run("inject", drive, "--fault", "miss:gyro:1:1", "--out", drive).code == 2
+    assert run("inject", drive, "--fault", "missing:gyro:1:1", "--out", drive).code == 2
     assert run("fit", drive, "--out", drive).code == 2
     assert drive.read_bytes() == before
 
 
 def test_inject_writes_all_or_nothing(run: Run, drive: Path) -> None:
     Path("bad.truth.json").mkdir()
-    assert run("inject", drive, "--fault", "miss:gyro:1:1", "--out", "bad.csv").code == 2
+    assert run("inject", drive, "--fault", "missing:gyro:1:1", "--out", "bad.csv").code == 2
     assert not Path("bad.csv").exists()
 
 

@@ -13,7 +13,7 @@ from sensorfault_studies import catalog
 from sensorfault_studies.catalog import Study
 from sensorfault_studies.findings import Effort, Figure, Findings, Row
 
-SHORT = Row("X1", "a drive", "injected", "", "good", "short", 2.0, "auc", 0.912, 0.021, 3, 0.99)
+SHORT = Row("X1", "a drive", "injected", "", "good", "spike", 2.0, "auc", 0.912, 0.021, 3, 0.99)
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def test_tables_and_remarks(run: Run, asked: list[Effort]) -> None:
     said = run("reproduce", "tiny2000", "--seeds", "3")
     assert said.code == 0
     assert [(effort.seeds, effort.quick) for effort in asked] == [(3, False)]
-    assert "X1 Spikes · short of 2 σ · real logs with injected faults" in said.out
+    assert "X1 Spikes · spike of 2 σ · real logs with injected faults" in said.out
     assert re.search(r"auc +paper\n.*\n.* 0.91 ±0.02 +0.99\n", said.out)
     assert "X2 The rest · real logs" in said.out
     assert "X2 The rest · simulated" in said.out

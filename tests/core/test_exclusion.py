@@ -42,32 +42,32 @@ def test_one_pass_blames_innocents_and_the_loop_none() -> None:
 
 def test_two_liars_take_two_rounds() -> None:
     rows = lies(0.3, -0.5, 15.0, 0.1, -9.0)
-    told = walk(one_unknown(most=2, channels=5), rows)
-    np.testing.assert_array_equal(told.channel, [[OK, OK, FAULT, OK, FAULT]])
+    result = walk(one_unknown(most=2, channels=5), rows)
+    np.testing.assert_array_equal(result.channel, [[OK, OK, FAULT, OK, FAULT]])
 
 
 def test_who_is_still_accused_when_the_rounds_run_out_is_unknown_and_kept_out() -> None:
     rows = lies(0.3, -0.5, 15.0, 0.1, -9.0)
-    told = walk(one_unknown(most=1, channels=5), rows)
-    assert told.channel[0, 2] == FAULT
-    assert told.channel[0, 4] == UNKNOWN
-    assert told.sensor[0, 4] == UNKNOWN
-    assert told.sample[0] == FAULT
-    assert not told.reports.trust.measured[0, [2, 4]].any()
-    assert not told.reports.trust.learn.any()
+    result = walk(one_unknown(most=1, channels=5), rows)
+    assert result.channel[0, 2] == FAULT
+    assert result.channel[0, 4] == UNKNOWN
+    assert result.sensor[0, 4] == UNKNOWN
+    assert result.sample[0] == FAULT
+    assert not result.reports.trust.measured[0, [2, 4]].any()
+    assert not result.reports.trust.learn.any()
 
 
 def test_the_largest_goes_first() -> None:
-    told = walk(says([branch(each(3))], (0, 1, 2), most=1), script([[2, 5, 3], [5, 2, 0]]))
-    np.testing.assert_array_equal(told.channel, [[UNKNOWN, FAULT, UNKNOWN], [FAULT, UNKNOWN, OK]])
+    result = walk(says([branch(each(3))], (0, 1, 2), most=1), script([[2, 5, 3], [5, 2, 0]]))
+    np.testing.assert_array_equal(result.channel, [[UNKNOWN, FAULT, UNKNOWN], [FAULT, UNKNOWN, OK]])
 
 
 def test_a_sensor_goes_with_all_its_channels() -> None:
     """The channels that were not accused are not faulty: they are unknown, and out of the filter with the rest."""
-    told = walk(says([branch(each(4))], (0, 1, 0, 1), most=1), script([[0, 0, 5, 0]]))
-    np.testing.assert_array_equal(told.channel, [[UNKNOWN, OK, FAULT, OK]])
-    np.testing.assert_array_equal(told.sensor, [[FAULT, OK]])
-    np.testing.assert_array_equal(told.reports.trust.measured, [[False, True, False, True]])
+    result = walk(says([branch(each(4))], (0, 1, 0, 1), most=1), script([[0, 0, 5, 0]]))
+    np.testing.assert_array_equal(result.channel, [[UNKNOWN, OK, FAULT, OK]])
+    np.testing.assert_array_equal(result.sensor, [[FAULT, OK]])
+    np.testing.assert_array_equal(result.reports.trust.measured, [[False, True, False, True]])
 
 
 def test_reported_scores_are_those_of_the_first_judgement() -> None:
@@ -82,7 +82,7 @@ def test_two_receivers_whose_channels_are_interleaved() -> None:
     monitor = two_fixes()
     value = np.tile([10.0, 10.0, 10.0, 10.0, 0.0], (12, 1))
     value[-1, 0] += 5.0
-    told = walk(monitor, script(np.zeros((12, 5)), value, time=0.02 * np.arange(12)))
-    np.testing.assert_array_equal(told.channel[-2], [OK] * 5)
-    np.testing.assert_array_equal(told.channel[-1], [FAULT, OK, UNKNOWN, OK, OK])
-    np.testing.assert_array_equal(told.sensor[-1], [OK, FAULT, OK])
+    result = walk(monitor, script(np.zeros((12, 5)), value, time=0.02 * np.arange(12)))
+    np.testing.assert_array_equal(result.channel[-2], [OK] * 5)
+    np.testing.assert_array_equal(result.channel[-1], [FAULT, OK, UNKNOWN, OK, OK])
+    np.testing.assert_array_equal(result.sensor[-1], [OK, FAULT, OK])

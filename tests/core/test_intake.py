@@ -14,25 +14,25 @@ NAN = np.nan
 def test_what_is_no_number_is_not_there(nothing: float) -> None:
     rows = script(np.zeros((2, 2)), np.ones((2, 2)))
     rows = rows._replace(value=put(rows.value, (1, 0), nothing))  # and the log insists that it is
-    told = walk(says([branch(each(2))], (0, 1)), rows)
-    np.testing.assert_array_equal(told.channel, [[OK, OK], [UNKNOWN, OK]])
-    np.testing.assert_array_equal(told.reports.trust.measured, [[True, True], [False, True]])
-    np.testing.assert_array_equal(told.reports.trust.value[1], [1.0, 1.0])
+    result = walk(says([branch(each(2))], (0, 1)), rows)
+    np.testing.assert_array_equal(result.channel, [[OK, OK], [UNKNOWN, OK]])
+    np.testing.assert_array_equal(result.reports.trust.measured, [[True, True], [False, True]])
+    np.testing.assert_array_equal(result.reports.trust.value[1], [1.0, 1.0])
 
 
 def test_held_keeps_its_verdict_for_the_stated_time_and_no_longer() -> None:
     fresh = np.array([True, False, False, False])[:, None]
     for score, verdict in ((0, OK), (2, FAULT)):
-        told = walk(says([branch(each(1))], (0,), hold_s=2.0), script([[score], [0], [0], [0]], fresh=fresh))
-        np.testing.assert_array_equal(told.channel[:, 0], [verdict, verdict, verdict, UNKNOWN])
-        np.testing.assert_array_equal(told.sample, [verdict, verdict, verdict, UNKNOWN])
-        np.testing.assert_array_equal(told.reports.trust.measured[1:, 0], [False, False, False])
+        result = walk(says([branch(each(1))], (0,), hold_s=2.0), script([[score], [0], [0], [0]], fresh=fresh))
+        np.testing.assert_array_equal(result.channel[:, 0], [verdict, verdict, verdict, UNKNOWN])
+        np.testing.assert_array_equal(result.sample, [verdict, verdict, verdict, UNKNOWN])
+        np.testing.assert_array_equal(result.reports.trust.measured[1:, 0], [False, False, False])
 
 
 def test_a_held_score_does_not_count() -> None:
     """A test whose channel is not fresh is no test, whatever the statistic says."""
-    told = walk(says([branch(each(1))], (0,), hold_s=5.0), script([[0], [9]], fresh=[[True], [False]]))
-    np.testing.assert_array_equal(told.channel[:, 0], [OK, OK])
+    result = walk(says([branch(each(1))], (0,), hold_s=5.0), script([[0], [9]], fresh=[[True], [False]]))
+    np.testing.assert_array_equal(result.channel[:, 0], [OK, OK])
 
 
 def test_missing_is_held_like_repeated() -> None:
@@ -49,6 +49,6 @@ def test_missing_is_held_like_repeated() -> None:
 
 def test_silence_is_counted_from_the_last_value() -> None:
     value = np.array([1, NAN, NAN, 1, 1])[:, None]
-    told = walk(says([branch(each(1))], (0,)), script(np.zeros((5, 1)), value))
-    np.testing.assert_array_equal(told.reports.silence[1:, 0], [1, 2, 3, 1])
-    assert told.reports.silence[0, 0] > 1e9
+    result = walk(says([branch(each(1))], (0,)), script(np.zeros((5, 1)), value))
+    np.testing.assert_array_equal(result.reports.silence[1:, 0], [1, 2, 3, 1])
+    assert result.reports.silence[0, 0] > 1e9

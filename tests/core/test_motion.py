@@ -19,11 +19,11 @@ def judged(memory_s: float = 0.0, hold_s: float = 0.0) -> Monitor:
 
 
 def scores(sensor: dict[int, float], motion: dict[int, float]) -> tuple[np.ndarray, np.ndarray]:
-    told = np.zeros((ROWS, 2)), np.zeros((ROWS, 2))
-    for one, large in zip(told, (sensor, motion), strict=True):
+    result = np.zeros((ROWS, 2)), np.zeros((ROWS, 2))
+    for one, large in zip(result, (sensor, motion), strict=True):
         for row, value in large.items():
             one[row, 0] = value
-    return told
+    return result
 
 
 def test_an_alarm_of_motion_accuses_no_sensor() -> None:
@@ -53,11 +53,11 @@ def test_a_slide_excuses_the_sensors_that_it_explains(excuses: bool) -> None:
     presuming = replace(branch(each(2)), memory_s=2.0)
     of_motion = replace(branch(each(2, 1)), subject="motion", excuses=excuses)
     monitor = says([presuming, of_motion, branch(each(2, 2))], (0, 1))
-    told = [np.zeros((ROWS, 2)) for _ in range(3)]
-    told[0][1:8, 0] = 5.0  # accused by what presumes the model ...
-    told[1][[0, 2], 0] = 5.0  # slides
-    told[2][7, 1] = 5.0
-    seen = walk(monitor, script(tuple(told)))
+    result = [np.zeros((ROWS, 2)) for _ in range(3)]
+    result[0][1:8, 0] = 5.0  # accused by what presumes the model ...
+    result[1][[0, 2], 0] = 5.0  # slides
+    result[2][7, 1] = 5.0
+    seen = walk(monitor, script(tuple(result)))
     # what slides at 2 s is heard only where the sensor was excused by then
     np.testing.assert_array_equal(seen.channel[1:, 0], [OK] * 4 + [FAULT] * 3 if excuses else [FAULT] * 7)
     np.testing.assert_array_equal(seen.channel[:, 1], [OK] * 7 + [FAULT])

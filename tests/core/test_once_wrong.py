@@ -12,7 +12,6 @@ from laws.walk import walk as plain_walk
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.runtime.runners import Stepper
-from sensorfault.stages.decision.persist import Persist
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.statistic.norm import Norm
 from sensorfault.stages.statistic.repeats import Repeats
@@ -31,16 +30,16 @@ def test_a_continued_replay_is_not_compiled_again(case):
 def test_a_window_alarm_gates_nothing_when_sensors_may_be_excluded():
     """Once: with most > 0 gates=False was forgotten: the exclusion loop struck on window alarms, and struck gates."""
     window = branch(each(2, 1), gates=False)
-    told = walk(says([branch(each(2)), window], (0, 1), most=2), script(([[0, 0], [0, 2]], [[2, 0], [0, 0]])))
-    np.testing.assert_array_equal(told.channel, [[FAULT, OK], [OK, FAULT]])
-    np.testing.assert_array_equal(told.reports.trust.measured, [[True, True], [True, False]])
+    result = walk(says([branch(each(2)), window], (0, 1), most=2), script(([[0, 0], [0, 2]], [[2, 0], [0, 0]])))
+    np.testing.assert_array_equal(result.channel, [[FAULT, OK], [OK, FAULT]])
+    np.testing.assert_array_equal(result.reports.trust.measured, [[True, True], [True, False]])
 
 
 def test_unknown_because_the_rounds_ran_out_stays_unknown_while_held():
     """Once: the decision remembers `named`, so what was UNKNOWN becomes FAULT on the next held row."""
     fresh = np.array([[True, True], [False, False]])
-    told = walk(says([branch(each(2))], (0, 1), most=1, hold_s=2.0), script([[5, 3], [0, 0]], fresh=fresh))
-    np.testing.assert_array_equal(told.channel, [[FAULT, UNKNOWN], [FAULT, UNKNOWN]])
+    result = walk(says([branch(each(2))], (0, 1), most=1, hold_s=2.0), script([[5, 3], [0, 0]], fresh=fresh))
+    np.testing.assert_array_equal(result.channel, [[FAULT, UNKNOWN], [FAULT, UNKNOWN]])
 
 
 class Counting(Says):
@@ -62,23 +61,23 @@ class Poisoned(Counting):
 def test_one_poisoned_branch_does_not_freeze_its_neighbour():
     """Once: keep_finite is applied to all branches as one."""
     eye = jnp.eye(1, dtype=bool), jnp.eye(1)
-    told = walk(says([branch(Poisoned(*eye)), branch(Counting(*eye))], (0,)), script(([[0]] * 5, [[0]] * 5)))
-    np.testing.assert_array_equal(told.states.branches[1][0], [1, 2, 3, 4, 5])
+    result = walk(says([branch(Poisoned(*eye)), branch(Counting(*eye))], (0,)), script(([[0]] * 5, [[0]] * 5)))
+    np.testing.assert_array_equal(result.states.branches[1][0], [1, 2, 3, 4, 5])
 
 
 def test_a_huge_value_is_named():
     """Once: the square overflows, blame is inf / inf = NaN: nobody is accused and the filter takes the value in."""
     monitor = says([Branch(Norm(jnp.ones(2)), Fixed(jnp.ones(1)))], (0, 1))
-    told = walk(monitor, script(np.zeros((1, 1)), [[1e200, 0.1]]))
-    np.testing.assert_array_equal(told.channel, [[FAULT, OK]])
-    assert not told.reports.trust.measured[0, 0]
+    result = walk(monitor, script(np.zeros((1, 1)), [[1e200, 0.1]]))
+    np.testing.assert_array_equal(result.channel, [[FAULT, OK]])
+    assert not result.reports.trust.measured[0, 0]
 
 
 def test_a_clock_that_goes_back_holds_nothing():
     """Once: time - seen < 0 <= hold_s: an absent channel keeps its verdict until the clock has caught up."""
     value = [[1.0], [np.nan], [np.nan], [np.nan]]
-    told = walk(says([branch(each(1))], (0,)), script([[0]] * 4, value, time=[1000.0, 0.0, 1.0, 500.0]))
-    np.testing.assert_array_equal(told.channel[1:, 0], [UNKNOWN] * 3)
+    result = walk(says([branch(each(1))], (0,)), script([[0]] * 4, value, time=[1000.0, 0.0, 1.0, 500.0]))
+    np.testing.assert_array_equal(result.channel[1:, 0], [UNKNOWN] * 3)
 
 
 def test_a_rebuilt_value_stands_while_the_faulty_one_is_held():
@@ -87,45 +86,23 @@ def test_a_rebuilt_value_stands_while_the_faulty_one_is_held():
     monitor = says(
         [branch(each(1))], (0,), hold_s=5.0, recovery=Rebuild(jnp.asarray(10.0, float), jnp.asarray(0.0, float), 1)
     )
-    told = walk(monitor, script([[0], [2], [0], [0]], [[1], [50], [50], [50]], fresh=fresh, expected=7.0))
-    np.testing.assert_array_equal(told.channel[:, 0], [OK, FAULT, FAULT, FAULT])
-    np.testing.assert_array_equal(told.reports.trust.value[:, 0], [1, 7, 7, 7])
-
-
-def test_persist_reports_alarms_without_blame():
-    """Once: hit = named.any(): 'unknown which' does not exist under Persist."""
-    blameless = Says(jnp.ones((1, 2), bool), jnp.zeros((1, 2)))
-    monitor = says([branch(blameless)], (0, 1), decision=Persist(2, 2, 3))
-    told = walk(monitor, script([[2.0]] * 4, np.ones((4, 2))))
-    assert (told.sample[1:] == FAULT).all()
-
-
-def test_persist_does_not_learn_from_what_exceeds():
-    """Once: a sample over its limit, not yet persistent, is OK and therefore learned from."""
-    monitor = says([branch(each(1))], (0,), decision=Persist(1, 3, 5))
-    told = walk(monitor, script([[0], [2], [2], [0]]))
-    np.testing.assert_array_equal(told.reports.trust.learn[:, 0], [True, False, False, True])
-
-
-def test_persist_forgets_the_source_that_left():
-    """Once: neither hold nor Persist sees `born`: a new satellite inherits the verdict of the old one."""
-    rows = script([[2], [0]], [[1], [1]], fresh=[[True], [False]])._replace(born=np.array([[False], [True]]))
-    told = walk(says([branch(each(1))], (0,), hold_s=5.0), rows)
-    assert told.channel[1, 0] == UNKNOWN
+    result = walk(monitor, script([[0], [2], [0], [0]], [[1], [50], [50], [50]], fresh=fresh, expected=7.0))
+    np.testing.assert_array_equal(result.channel[:, 0], [OK, FAULT, FAULT, FAULT])
+    np.testing.assert_array_equal(result.reports.trust.value[:, 0], [1, 7, 7, 7])
 
 
 def test_a_new_source_without_a_value_forgets_the_last_one():
     """Once: Repeats forgets at a birth only if that very sample is valid."""
     monitor = says([Branch(Repeats(1), Fixed(jnp.zeros(1)))], (0,))
     rows = script([[0]] * 3, [[3], [np.nan], [3]])._replace(born=np.array([[False], [True], [False]]))
-    told = walk(monitor, rows)
-    assert told.reports.scores[0].value[2, 0] == 0
+    result = walk(monitor, rows)
+    assert result.reports.scores[0].value[2, 0] == 0
 
 
 def test_a_first_value_of_zero_repeats_nothing():
     """Once: the memory of Repeats starts with a measurement of zero."""
-    told = walk(says([Branch(Repeats(1), Fixed(jnp.zeros(1)))], (0,)), script([[0]], [[0.0]]))
-    assert told.reports.scores[0].value[0, 0] == 0
+    result = walk(says([Branch(Repeats(1), Fixed(jnp.zeros(1)))], (0,)), script([[0]], [[0.0]]))
+    assert result.reports.scores[0].value[0, 0] == 0
 
 
 class TakesFlags(FromBlock):

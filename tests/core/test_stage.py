@@ -28,16 +28,16 @@ def test_a_residual_that_believes_a_nan_costs_one_sample() -> None:
     """A stage that does not look after itself: the sample is unknown, the state is kept, the next is judged."""
     rows = block().rows
     k = telling(block())
-    told = walk(inertial(careful=False), holed(rows, k))
-    assert finite(told.states)
-    np.testing.assert_array_equal(told.channel[k], [UNKNOWN, UNKNOWN])
-    assert told.sample[k] == UNKNOWN
-    np.testing.assert_array_equal(told.channel[k + 1 :], OK)
+    result = walk(inertial(careful=False), holed(rows, k))
+    assert finite(result.states)
+    np.testing.assert_array_equal(result.channel[k], [UNKNOWN, UNKNOWN])
+    assert result.sample[k] == UNKNOWN
+    np.testing.assert_array_equal(result.channel[k + 1 :], OK)
 
 
 def test_a_residual_that_looks_after_itself_pays_in_covariance() -> None:
     rows, k = block().rows, telling(block())
-    told, clean = walk(inertial(), holed(rows, k)), walk(inertial(), rows)
-    variance, before = (np.diagonal(x.reports.residual.cov[k]) for x in (told, clean))
+    result, clean = walk(inertial(), holed(rows, k)), walk(inertial(), rows)
+    variance, before = (np.diagonal(x.reports.residual.cov[k]) for x in (result, clean))
     assert (variance > before).all()
-    np.testing.assert_array_equal(told.channel[k], [OK, OK])
+    np.testing.assert_array_equal(result.channel[k], [OK, OK])

@@ -26,7 +26,7 @@ def event(
     end_s: float | None = None,
     sensor: str | None = "gyro",
     channel: str | None = "x",
-    kind: str = "bias",
+    kind: str = "offset",
     limit: float | None = 1.0,
 ) -> Event:
     return Event(start_s, end_s, "sensor", sensor, channel, kind, 2.0, limit, "hand")

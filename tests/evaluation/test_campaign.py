@@ -12,7 +12,7 @@ from sensorfault.evaluation.campaign import MAGNITUDES, Campaign, campaign
 from sensorfault.logs.table import LogError
 from sensorfault.runtime.model import MISSED
 
-KINDS = ("short", "bias", "jam", "miss")
+KINDS = ("spike", "offset", "frozen", "missing")
 
 
 @cache
@@ -23,17 +23,17 @@ def done() -> Campaign:
 def test_every_kind_on_every_watched_channel_at_every_magnitude() -> None:
     cells = done().cells
     paths = [channel.path for channel in fitted.CHANNELS[:6]]
-    for kind in ("short", "bias", "jam"):
+    for kind in ("spike", "offset", "frozen"):
         mine = {(cell.channel, cell.magnitude) for cell in cells if cell.kind == kind}
         assert mine == {(path, size) for path in paths for size in MAGNITUDES[kind]}
-    assert {cell.channel for cell in cells if cell.kind == "miss"} == {"gyro", "accelerometer", "gnss"}
+    assert {cell.channel for cell in cells if cell.kind == "missing"} == {"gyro", "accelerometer", "gnss"}
     assert all(cell.faults == 2 for cell in cells)
     assert len(done().outcomes) == 2 * len(cells)
 
 
 def test_what_is_plain_is_found() -> None:
     for cell in done().cells:
-        if cell.kind in ("jam", "miss") or cell.magnitude == 20.0:
+        if cell.kind in ("frozen", "missing") or cell.magnitude == 20.0:
             assert cell.recall == 1.0, cell
             assert cell.sensor_right == 1.0, cell
             assert 0 <= cell.delay_p50_s <= cell.delay_p95_s < 1.0
@@ -41,7 +41,7 @@ def test_what_is_plain_is_found() -> None:
 
 
 def test_larger_faults_are_found_at_least_as_often() -> None:
-    for kind in ("short", "bias"):
+    for kind in ("spike", "offset"):
         by_size = {
             size: [c.recall for c in done().cells if (c.kind, c.magnitude) == (kind, size)] for size in (3.0, 20.0)
         }
@@ -61,27 +61,27 @@ def test_the_rest_of_the_answer() -> None:
 
 
 def test_stand_ins_are_better_than_the_faulty_value() -> None:
-    biased = [cell.recovery for cell in done().cells if (cell.kind, cell.magnitude) == ("bias", 20.0)]
+    biased = [cell.recovery for cell in done().cells if (cell.kind, cell.magnitude) == ("offset", 20.0)]
     assert np.median(biased) < 0.2
 
 
 def test_it_can_be_repeated() -> None:
-    told: list[float] = []
-    kinds = ("jam",)
+    result: list[float] = []
+    kinds = ("frozen",)
     one, again, other = (
-        campaign(fitted.model(), fitted.unseen(), kinds, duration_s=2.0, repeats=1, seed=seed, progress=told.append)
+        campaign(fitted.model(), fitted.unseen(), kinds, duration_s=2.0, repeats=1, seed=seed, progress=result.append)
         for seed in (3, 3, 4)
     )
     assert one == again
     assert [o.fault.start_s for o in one.outcomes] != [o.fault.start_s for o in other.outcomes]
-    assert told[: len(told) // 3] == sorted(told[: len(told) // 3])
-    assert told[-1] == 1.0
+    assert result[: len(result) // 3] == sorted(result[: len(result) // 3])
+    assert result[-1] == 1.0
 
 
 def test_a_sensor_too_slow_to_be_missed_in_time_is_left_out() -> None:
     """In half a second of silence a 10 Hz fix is overdue; in a quarter it is not."""
     for duration_s, sensors in ((0.5, {"gyro", "accelerometer", "gnss"}), (0.25, {"gyro", "accelerometer"})):
-        cells = campaign(fitted.model(), fitted.unseen(), ("miss",), duration_s=duration_s, repeats=1).cells
+        cells = campaign(fitted.model(), fitted.unseen(), ("missing",), duration_s=duration_s, repeats=1).cells
         assert {cell.channel for cell in cells} == sensors
     assert MISSED == 3.0
 

@@ -11,7 +11,7 @@ from sensorfault.evaluation.cells import tabulate
 from sensorfault.evaluation.judge import GRACE_S, Outcome, judge
 from sensorfault.faults.fault import Fault
 
-BIAS = Fault("bias", "gyro", "x", 100.0, 5.0, 3.0, sigmas=True)
+BIAS = Fault("offset", "gyro", "x", 100.0, 5.0, 3.0, sigmas=True)
 HIT = Outcome(BIAS, True, 1.0, True, True, True, event(101.0), 0, 4.0, 1.0)
 MISSED = Outcome(BIAS, False, math.nan, False, False, False, None, 0, 4.0, 4.0)
 
@@ -19,7 +19,7 @@ MISSED = Outcome(BIAS, False, math.nan, False, False, False, None, 0, 4.0, 4.0)
 def test_one_cell_counts_its_group() -> None:
     outcomes = [HIT, replace(HIT, delay_s=3.0, channel_right=False, error_after=2.0), MISSED, MISSED]
     (cell,) = tabulate(outcomes, detection())
-    assert (cell.kind, cell.channel, cell.magnitude, cell.faults) == ("bias", "gyro.x", 3.0, 4)
+    assert (cell.kind, cell.channel, cell.magnitude, cell.faults) == ("offset", "gyro.x", 3.0, 4)
     assert cell.recall == 0.5
     assert cell.delay_p50_s == 2.0
     assert cell.delay_p95_s == pytest.approx(2.9)
@@ -36,20 +36,20 @@ def test_nothing_found_has_no_delay_and_no_isolation() -> None:
 
 def test_a_cell_for_each_kind_channel_and_magnitude_in_order() -> None:
     faults = [
-        Fault("miss", "gyro", None, 1.0, 5.0),
+        Fault("missing", "gyro", None, 1.0, 5.0),
         replace(BIAS, magnitude=10.0),
         replace(BIAS, sensor="gnss", channel="east"),
         BIAS,
-        Fault("short", "gyro", "y", 1.0, 0.0, 3.0),
+        Fault("spike", "gyro", "y", 1.0, 0.0, 3.0),
         BIAS,
     ]
     cells = tabulate([replace(MISSED, fault=fault) for fault in faults], detection())
     assert [(cell.kind, cell.magnitude, cell.channel, cell.faults) for cell in cells] == [
-        ("short", 3.0, "gyro.y", 1),
-        ("bias", 3.0, "gnss.east", 1),
-        ("bias", 3.0, "gyro.x", 2),
-        ("bias", 10.0, "gyro.x", 1),
-        ("miss", 0.0, "gyro", 1),
+        ("spike", 3.0, "gyro.y", 1),
+        ("offset", 3.0, "gnss.east", 1),
+        ("offset", 3.0, "gyro.x", 2),
+        ("offset", 10.0, "gyro.x", 1),
+        ("missing", 0.0, "gyro", 1),
     ]
 
 

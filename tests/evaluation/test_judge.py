@@ -12,7 +12,7 @@ from evaluation.detections import TICK_S, detection, event, quiet
 from sensorfault.evaluation.judge import GRACE_S, Outcome, covered_s, judge, noticed_s
 from sensorfault.faults.fault import Fault
 
-FAULT = Fault("bias", "gyro", "x", 100.0, 10.0, 5.0)
+FAULT = Fault("offset", "gyro", "x", 100.0, 10.0, 5.0)
 
 
 def outcome(*events: object, fault: Fault = FAULT) -> Outcome:
@@ -57,7 +57,7 @@ def test_delay_is_never_negative() -> None:
 
 def test_the_first_alarm_counts() -> None:
     """A right answer later does not mend a wrong one before."""
-    one = outcome(event(105.0), event(101.0, sensor="gnss", channel="east", kind="jam"))
+    one = outcome(event(105.0), event(101.0, sensor="gnss", channel="east", kind="frozen"))
     assert one.delay_s == pytest.approx(1.0)
     assert (one.sensor_right, one.channel_right, one.kind_right) == (False, False, False)
 
@@ -91,17 +91,17 @@ def test_any_channel_is_right_where_all_were_struck() -> None:
 
 def test_a_silence_is_noticed_when_it_has_lasted_too_long() -> None:
     """Its event begins in the past: nobody could know then."""
-    miss = Fault("miss", "gyro", None, 100.0, 10.0)
-    said = event(100.1, channel=None, kind="miss", limit=0.35)
+    miss = Fault("missing", "gyro", None, 100.0, 10.0)
+    said = event(100.1, channel=None, kind="missing", limit=0.35)
     assert noticed_s(said) == pytest.approx(100.45)
     assert outcome(said, fault=miss).delay_s == pytest.approx(0.45)
     assert noticed_s(event(100.0)) == 100.0
-    assert noticed_s(event(100.0, kind="miss", limit=None)) == 100.0
+    assert noticed_s(event(100.0, kind="missing", limit=None)) == 100.0
 
 
 def test_a_spike() -> None:
-    spike = Fault("short", "gyro", "x", 100.0, 0.0, 5.0)
-    assert outcome(event(100.0, 100.0, kind="short"), fault=spike).kind_right
+    spike = Fault("spike", "gyro", "x", 100.0, 0.0, 5.0)
+    assert outcome(event(100.0, 100.0, kind="spike"), fault=spike).kind_right
     assert outcome(event(100.0 + GRACE_S), fault=spike).found
     assert not outcome(event(100.1 + GRACE_S), fault=spike).found
 
@@ -180,7 +180,7 @@ def test_the_union_of_windows_by_counting_seconds(spans: list[tuple[int, int]]) 
 @settings(deadline=None)
 def test_each_event_is_a_finding_or_a_false_alarm(starts: list[float], spans: list[tuple[float, float]]) -> None:
     """By brute force: an event is false exactly if it begins within no fault; a fault is found exactly if one does."""
-    faults = [Fault("bias", "gyro", "x", start, length, 1.0) for start, length in spans]
+    faults = [Fault("offset", "gyro", "x", start, length, 1.0) for start, length in spans]
     events = [event(start) for start in starts]
     judgement = judge(detection(events), faults)
 

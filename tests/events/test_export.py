@@ -20,10 +20,10 @@ from sensorfault.logs import Channel, Log, LogError, Sensor
 
 EPOCH_S = 1_700_000_000.25
 EVENTS = (
-    Event(1.0, 2.0, "sensor", "gyro", "x", "bias", 9.0, 8.0, "drone"),
-    Event(1.5, None, "sensor", "gnss", None, "miss", 1.5, 0.6, "drone"),
+    Event(1.0, 2.0, "sensor", "gyro", "x", "offset", 9.0, 8.0, "drone"),
+    Event(1.5, None, "sensor", "gnss", None, "missing", 1.5, 0.6, "drone"),
     Event(2.0, 2.0, "motion", None, None, "unknown", 4.0, 3.0, "car"),
-    Event(3.0, 3.5, "sensor", None, None, "jam", None, None, "car"),
+    Event(3.0, 3.5, "sensor", None, None, "frozen", None, None, "car"),
 )
 
 
@@ -44,7 +44,7 @@ def test_json_lines(tmp_path: Path) -> None:
 def test_csv_and_parquet(tmp_path: Path) -> None:
     write_events(EVENTS, log(), tmp_path / "events.csv")
     rows = list(csv.DictReader((tmp_path / "events.csv").read_text().splitlines()))
-    assert [row["kind"] for row in rows] == ["bias", "miss", "unknown", "jam"]
+    assert [row["kind"] for row in rows] == ["offset", "missing", "unknown", "frozen"]
     assert rows[1]["end_s"] == rows[1]["channel"] == ""
     write_events(EVENTS, log(), tmp_path / "events.parquet")
     assert pl.read_parquet(tmp_path / "events.parquet").rows(named=True) == [event.as_dict() for event in EVENTS]
@@ -76,12 +76,12 @@ def test_annotations_beside_the_recording(tmp_path: Path) -> None:
     assert at == [0, 1, 1.5, 2, 2, 2, 3, 3.5, 4.9]
     quiet = {"gyro": "ok", "gnss": "ok", "motion": "ok", "unknown": "ok"}
     assert states[0][1] == quiet
-    assert states[1][1] == {**quiet, "gyro": "bias"}
-    assert states[2][1] == {**quiet, "gyro": "bias", "gnss": "miss"}
-    assert states[-1][1] == {**quiet, "gnss": "miss"}
+    assert states[1][1] == {**quiet, "gyro": "offset"}
+    assert states[2][1] == {**quiet, "gyro": "offset", "gnss": "missing"}
+    assert states[-1][1] == {**quiet, "gnss": "missing"}
     texts = [raw for topic, _, raw in messages(tmp_path / "told.mcap") if topic == "/sensorfault/events"]
     assert len(texts) == 7
-    assert b"bias on gyro.x begins (score 9, limit 8, drone)" in texts[0]
+    assert b"offset on gyro.x begins (score 9, limit 8, drone)" in texts[0]
 
 
 def test_a_recording_is_copied_with_all_that_it_holds(tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_a_recording_is_copied_with_all_that_it_holds(tmp_path: Path) -> None:
         writer.add_metadata("car", {"plate": "M-1"})
         writer.finish()
     write_events(EVENTS, log(), path, source)
-    told = {}
+    result = {}
     for one in (source, path):
         with one.open("rb") as file:
             reader = make_reader(file)
@@ -110,8 +110,8 @@ def test_a_recording_is_copied_with_all_that_it_holds(tmp_path: Path) -> None:
                 if "/sensorfault" not in c.topic
             ]
             attached = [(one.name, one.data, one.log_time) for one in reader.iter_attachments()]
-            told[one] = own, attached, list(reader.iter_metadata()), reader.get_header().profile
-    assert told[path] == told[source]
+            result[one] = own, attached, list(reader.iter_metadata()), reader.get_header().profile
+    assert result[path] == result[source]
     with path.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
@@ -157,14 +157,14 @@ def diagnostics(path: Path) -> list[tuple[float, Any]]:
 @pytest.mark.parametrize("name", ["events.bag", "events"])
 def test_diagnostic_arrays_in_a_bag(tmp_path: Path, name: str) -> None:
     write_events(EVENTS, log(), tmp_path / name)
-    told = diagnostics(tmp_path / name)
-    assert len(told) == 7
-    time, first = told[0]
+    result = diagnostics(tmp_path / name)
+    assert len(result) == 7
+    time, first = result[0]
     assert time == pytest.approx(EPOCH_S + 1)
     (status,) = first.status
     assert (status.level, status.name, status.hardware_id) == (2, "sensorfault: gyro.x", "gyro")
-    assert {pair.key: pair.value for pair in status.values}["kind"] == "bias"
-    levels = {(message.status[0].name, message.status[0].level) for _, message in told}
+    assert {pair.key: pair.value for pair in status.values}["kind"] == "offset"
+    levels = {(message.status[0].name, message.status[0].level) for _, message in result}
     assert ("sensorfault: gnss", 2) in levels
     assert ("sensorfault: gnss", 0) not in levels  # it goes on
     assert ("sensorfault: vehicle motion", 0) in levels

@@ -9,7 +9,8 @@ from sensorfault.faults.inject import Injected, inject
 from sensorfault.logs.table import Log
 
 LOG = example()
-SIZE = {"short": 4.0, "bias": -3.0, "drift": 0.7, "noise": 2.0, "scale": 1.5, "delay": 0.8, "jam": 0.0, "miss": 0.0}
+SIZE = {"spike": 4.0, "offset": -3.0, "drift": 0.7, "noise": 2.0, "scale": 1.5, "delay": 0.8}
+SIZE |= {"frozen": 0.0, "missing": 0.0}
 
 
 def column(fault: Fault, index: int, log: Log = LOG, seed: int = 0) -> np.ndarray:
@@ -22,12 +23,12 @@ def inside(start_s: float, end_s: float) -> np.ndarray:
 
 def test_bias_adds_in_the_channels_unit() -> None:
     expected = LOG.value[:, GYRO_Z] + np.where(inside(5.0, 8.0), 2 * DEGREE, 0.0)
-    np.testing.assert_array_equal(column(Fault("bias", "gyro", "z", 5.0, 3.0, 2.0), GYRO_Z), expected)
+    np.testing.assert_array_equal(column(Fault("offset", "gyro", "z", 5.0, 3.0, 2.0), GYRO_Z), expected)
 
 
 def test_sigmas_are_those_of_the_channels_measurements() -> None:
     fixes = LOG.value[3::5, SPEED]
-    moved = column(Fault("bias", "gnss", "speed", 5.0, 3.0, 2.0, sigmas=True), SPEED) - LOG.value[:, SPEED]
+    moved = column(Fault("offset", "gnss", "speed", 5.0, 3.0, 2.0, sigmas=True), SPEED) - LOG.value[:, SPEED]
     assert moved[60] == pytest.approx(2 * np.sqrt(np.mean((fixes - fixes.mean()) ** 2)))
 
 
@@ -42,7 +43,7 @@ def test_drift_grows_from_onset_and_is_gone_at_the_end() -> None:
 
 
 def test_jam_repeats_the_last_healthy_measurement_as_new_ones() -> None:
-    done = inject(LOG, [Fault("jam", "gnss", "speed", 5.0, 2.0)])
+    done = inject(LOG, [Fault("frozen", "gnss", "speed", 5.0, 2.0)])
     # Fixes come at 4.8, 5.3, 5.8, 6.3, 6.8, 7.3 s; what was measured at 6.8 s is held until 7.3 s.
     assert set(done.log.value[53:73, SPEED]) == {LOG.value[48, SPEED]}
     assert done.log.value[73, SPEED] == LOG.value[73, SPEED]
@@ -51,11 +52,11 @@ def test_jam_repeats_the_last_healthy_measurement_as_new_ones() -> None:
 
 
 def test_a_jam_from_the_first_measurement_on_repeats_that_one() -> None:
-    assert set(column(Fault("jam", "gyro", "x", 0.0, 2.0), GYRO_X)[:20]) == {LOG.value[0, GYRO_X]}
+    assert set(column(Fault("frozen", "gyro", "x", 0.0, 2.0), GYRO_X)[:20]) == {LOG.value[0, GYRO_X]}
 
 
 def test_miss_takes_values_and_their_repetitions_away() -> None:
-    done = inject(LOG, [Fault("miss", "gnss", None, 5.0, 2.0)])
+    done = inject(LOG, [Fault("missing", "gnss", None, 5.0, 2.0)])
     gone = np.isnan(done.log.value[:, LATITUDE])
     np.testing.assert_array_equal(np.flatnonzero(gone[3:]) + 3, np.arange(53, 73))
     assert not done.log.fresh[53:73, [LATITUDE, SPEED]].any()
@@ -86,7 +87,7 @@ def test_delay_shows_what_was_measured_before() -> None:
 
 
 def test_a_short_without_duration_strikes_one_measurement() -> None:
-    done = inject(LOG, [Fault("short", "gnss", "speed", 5.0, 0.0, 36.0)])
+    done = inject(LOG, [Fault("spike", "gnss", "speed", 5.0, 0.0, 36.0)])
     moved = done.log.value[:, SPEED] - LOG.value[:, SPEED]
     np.testing.assert_allclose(moved[53:58], 10.0)
     np.testing.assert_array_equal(np.flatnonzero(np.nan_to_num(moved)), np.arange(53, 58))
@@ -95,7 +96,7 @@ def test_a_short_without_duration_strikes_one_measurement() -> None:
 
 def test_a_longer_short_is_isolated_spikes() -> None:
     log = example(20_000)
-    done = inject(log, [Fault("short", "gyro", "x", 5.0, 1900.0, 3.0)])
+    done = inject(log, [Fault("spike", "gyro", "x", 5.0, 1900.0, 3.0)])
     hit = np.flatnonzero(done.mask[:, GYRO_X])
     assert hit[0] == 50
     assert hit[-1] < 19_050
@@ -105,17 +106,17 @@ def test_a_longer_short_is_isolated_spikes() -> None:
 
 
 def test_faults_on_one_channel_act_by_onset() -> None:
-    bias, scale = Fault("bias", "gyro", "z", 5.0, 4.0, 1.0), Fault("scale", "gyro", "z", 6.0, 1.0, 3.0)
+    bias, scale = Fault("offset", "gyro", "z", 5.0, 4.0, 1.0), Fault("scale", "gyro", "z", 6.0, 1.0, 3.0)
     done = inject(LOG, [scale, bias]).log.value[:, GYRO_Z]
     assert done[55] == pytest.approx(LOG.value[55, GYRO_Z] + DEGREE)
     assert done[65] == pytest.approx((LOG.value[65, GYRO_Z] + DEGREE) * 3)
-    assert [fault.kind for fault in inject(LOG, [scale, bias]).truth] == ["bias", "scale"]
+    assert [fault.kind for fault in inject(LOG, [scale, bias]).truth] == ["offset", "scale"]
 
 
 def test_what_runs_past_the_log_is_clipped_in_the_truth() -> None:
-    (done,) = inject(LOG, [Fault("bias", "gyro", "z", 18.0, 60.0, 1.0)]).truth
+    (done,) = inject(LOG, [Fault("offset", "gyro", "z", 18.0, 60.0, 1.0)]).truth
     assert done.end_s == pytest.approx(LOG.time[-1])
-    inner = Fault("bias", "gyro", "z", 0.7, 0.1, 1.0)
+    inner = Fault("offset", "gyro", "z", 0.7, 0.1, 1.0)
     assert inject(LOG, [inner]).truth == (inner,)
 
 
@@ -154,7 +155,7 @@ def test_laws_of_injection(faults: list[Fault], shuffler) -> None:
     done, refusal = attempt(faults)
     if done is None:  # an earlier miss left a later fault nothing to strike
         assert "measures nothing" in refusal
-        assert any(fault.kind == "miss" for fault in faults)
+        assert any(fault.kind == "missing" for fault in faults)
         return
     # The log given stays as it was.
     np.testing.assert_array_equal(LOG.value, before.value)
@@ -188,18 +189,18 @@ def test_laws_of_injection(faults: list[Fault], shuffler) -> None:
     ("fault", "sentence"),
     [
         (Fault("melt", "gyro", "z", 5.0, 1.0, 1.0), "kind 'melt' is unknown"),
-        (Fault("bias", "gyrr", "z", 5.0, 1.0, 1.0), "no sensor is called 'gyrr'; take one of gyro, gnss, baro"),
-        (Fault("bias", "gyro", "q", 5.0, 1.0, 1.0), "no channel 'q'; take one of x, z"),
-        (Fault("bias", "gyro", "z", -1.0, 3.0, 1.0), "lies outside the log; choose one from 0 to 19.9 s"),
-        (Fault("bias", "gyro", "z", 20.0, 3.0, 1.0), "lies outside the log"),
-        (Fault("bias", "gyro", "z", 5.0, -3.0, 1.0), "is negative"),
-        (Fault("bias", "gyro", "z", 5.0, 0.0, 1.0), "only a short may last 0 s"),
-        (Fault("bias", "gyro", "z", 5.0, 1.0), "magnitude is missing"),
-        (Fault("bias", "gyro", "z", 5.0, 1.0, float("nan")), "finite"),
+        (Fault("offset", "gyrr", "z", 5.0, 1.0, 1.0), "no sensor is called 'gyrr'; take one of gyro, gnss, baro"),
+        (Fault("offset", "gyro", "q", 5.0, 1.0, 1.0), "no channel 'q'; take one of x, z"),
+        (Fault("offset", "gyro", "z", -1.0, 3.0, 1.0), "lies outside the log; choose one from 0 to 19.9 s"),
+        (Fault("offset", "gyro", "z", 20.0, 3.0, 1.0), "lies outside the log"),
+        (Fault("offset", "gyro", "z", 5.0, -3.0, 1.0), "is negative"),
+        (Fault("offset", "gyro", "z", 5.0, 0.0, 1.0), "only a short may last 0 s"),
+        (Fault("offset", "gyro", "z", 5.0, 1.0), "magnitude is missing"),
+        (Fault("offset", "gyro", "z", 5.0, 1.0, float("nan")), "finite"),
         (Fault("noise", "gyro", "z", 5.0, 1.0, -1.0), "give a positive one"),
         (Fault("scale", "gyro", "z", 5.0, 1.0, 1.0), "a factor of 1"),
         (Fault("scale", "gyro", "z", 5.0, 1.0, 2.0, sigmas=True), "not counted in sigmas"),
-        (Fault("bias", "gnss", "speed", 5.4, 0.2, 1.0), "measures nothing from 5.4 to 5.6 s"),
+        (Fault("offset", "gnss", "speed", 5.4, 0.2, 1.0), "measures nothing from 5.4 to 5.6 s"),
     ],
 )
 def test_a_fault_that_cannot_be_is_refused_in_a_sentence(fault: Fault, sentence: str) -> None:
@@ -214,4 +215,4 @@ def test_a_constant_channel_has_no_sigma() -> None:
     value[:, GYRO_X] = 1.0
     flat = Log(LOG.time, value, LOG.fresh, LOG.channels, LOG.sensors)
     with pytest.raises(FaultError, match="never changes"):
-        inject(flat, [Fault("bias", "gyro", "x", 5.0, 1.0, 2.0, sigmas=True)])
+        inject(flat, [Fault("offset", "gyro", "x", 5.0, 1.0, 2.0, sigmas=True)])

@@ -15,7 +15,7 @@ def test_a_sweep_is_every_kind_on_every_watched_channel() -> None:
     assert {(f.kind, f.where) for f in faults} == {
         (kind, path) for kind in KINDS for path in ("gyro.x", "gyro.z", "gnss.speed", "baro.pressure")
     }
-    assert [f.where for f in sweep(LOG, ["jam"], ["gnss.latitude"])] == ["gnss.latitude"]
+    assert [f.where for f in sweep(LOG, ["frozen"], ["gnss.latitude"])] == ["gnss.latitude"]
     with pytest.raises(FaultError, match="kind 'melt' is unknown"):
         sweep(LOG, ["melt"])
 
@@ -23,7 +23,7 @@ def test_a_sweep_is_every_kind_on_every_watched_channel() -> None:
 @settings(max_examples=50, deadline=None)
 @given(st.lists(st.floats(0.5, 30.0), min_size=1, max_size=8), st.integers(0, 5), st.floats(0.0, 200.0))
 def test_planned_faults_keep_their_distance(lasting: list[float], seed: int, start_s: float) -> None:
-    wanted = [Fault("jam", "gyro", "z", 0.0, duration) for duration in lasting]
+    wanted = [Fault("frozen", "gyro", "z", 0.0, duration) for duration in lasting]
     planned = plan(LOG, wanted, start_s=start_s, end_s=590.0, pause_s=12.0, seed=seed)
     assert sorted(f.duration_s for f in planned) == sorted(lasting)
     ends = [start_s, *(f.end_s for f in planned)]
@@ -40,4 +40,4 @@ def test_a_planned_sweep_can_be_injected() -> None:
 
 def test_too_much_is_refused_in_a_sentence() -> None:
     with pytest.raises(FaultError, match=r"3 faults with pauses of 10 s need 640 s and there are 599\.9 s"):
-        plan(LOG, [Fault("jam", "gyro", "z", 0.0, 200.0)] * 3)
+        plan(LOG, [Fault("frozen", "gyro", "z", 0.0, 200.0)] * 3)

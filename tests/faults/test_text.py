@@ -6,16 +6,16 @@ from faults.example import example
 from sensorfault.faults.fault import Fault, FaultError
 from sensorfault.faults.text import parse_fault, truth_from_json, truth_to_json
 
-BIAS = {"kind": "bias", "sensor": "gyro", "channel": "z", "start_s": 1, "duration_s": 2.5, "magnitude": 3.0}
+BIAS = {"kind": "offset", "sensor": "gyro", "channel": "z", "start_s": 1, "duration_s": 2.5, "magnitude": 3.0}
 
 
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("bias:gyro.z:120:20:5sigma", Fault("bias", "gyro", "z", 120.0, 20.0, 5.0, sigmas=True)),
-        ("short:gyro:1.5:0:-2", Fault("short", "gyro", None, 1.5, 0.0, -2.0)),
+        ("offset:gyro.z:120:20:5sigma", Fault("offset", "gyro", "z", 120.0, 20.0, 5.0, sigmas=True)),
+        ("spike:gyro:1.5:0:-2", Fault("spike", "gyro", None, 1.5, 0.0, -2.0)),
         ("drift:gnss.latitude:3:60:1e-5", Fault("drift", "gnss", "latitude", 3.0, 60.0, 1e-5)),
-        ("jam:gnss:3:60", Fault("jam", "gnss", None, 3.0, 60.0)),
+        ("frozen:gnss:3:60", Fault("frozen", "gnss", None, 3.0, 60.0)),
         ("scale:gyro.x:3:60:0", Fault("scale", "gyro", "x", 3.0, 60.0, 0.0)),
         (" noise : gyro.x : 3 : 60 : 2 sigmas ", Fault("noise", "gyro", "x", 3.0, 60.0, 2.0, sigmas=True)),
     ],
@@ -27,20 +27,20 @@ def test_text_becomes_a_fault(text: str, fault: Fault) -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("bias:gyro.z:5", "has 3 parts; write kind:sensor"),
-        ("melt:gyro.z:5:1", "kind 'melt' is unknown; take one of short, bias"),
-        ("bias:gyro.q:5:1:2", "no channel 'q'; take one of x, z"),
-        ("bias:gps:5:1:2", "no sensor is called 'gps'"),
-        ("bias::5:1:2", "names no sensor"),
-        ("bias:gyro.z:99:1:2", "lies outside the log"),
-        ("bias:gyro.z:5:-1:2", "is negative"),
-        ("bias:gyro.z:5:1", "a bias needs a magnitude"),
+        ("offset:gyro.z:5", "has 3 parts; write kind:sensor"),
+        ("melt:gyro.z:5:1", "kind 'melt' is unknown; take one of spike, offset"),
+        ("offset:gyro.q:5:1:2", "no channel 'q'; take one of x, z"),
+        ("offset:gps:5:1:2", "no sensor is called 'gps'"),
+        ("offset::5:1:2", "names no sensor"),
+        ("offset:gyro.z:99:1:2", "lies outside the log"),
+        ("offset:gyro.z:5:-1:2", "is negative"),
+        ("offset:gyro.z:5:1", "kind offset needs a magnitude"),
         ("scale:gyro.z:5:1:", "a scale needs a magnitude"),
-        ("bias:gyro.z:5:1:sigma", "magnitude '' is not a number"),
-        ("bias:gyro.z:5:1:big", "magnitude 'big' is not a number"),
-        ("bias:gyro.z:soon:1:2", "onset 'soon' is not a number"),
-        ("bias:gyro.z:5:inf:2", "finite"),
-        ("jam:gyro.z:5:1:2", "a jam has no magnitude"),
+        ("offset:gyro.z:5:1:sigma", "magnitude '' is not a number"),
+        ("offset:gyro.z:5:1:big", "magnitude 'big' is not a number"),
+        ("offset:gyro.z:soon:1:2", "onset 'soon' is not a number"),
+        ("offset:gyro.z:5:inf:2", "finite"),
+        ("frozen:gyro.z:5:1:2", "kind frozen has no magnitude"),
         ("delay:gyro.z:5:1:2sigma", "not counted in sigmas"),
     ],
 )
@@ -52,7 +52,7 @@ def test_text_that_is_no_fault_is_refused_in_a_sentence(text: str, sentence: str
 
 
 def test_truth_comes_back_from_json() -> None:
-    truth = (parse_fault("bias:gyro.z:0.1:0.2:5sigma"), parse_fault("jam:gnss:3:60"))
+    truth = (parse_fault("offset:gyro.z:0.1:0.2:5sigma"), parse_fault("frozen:gnss:3:60"))
     assert truth_from_json(truth_to_json(truth)) == truth
     assert json.loads(truth_to_json(truth))[1]["channel"] is None
 
@@ -60,9 +60,9 @@ def test_truth_comes_back_from_json() -> None:
 @pytest.mark.parametrize(
     ("entries", "sentence"),
     [
-        ({"kind": "bias"}, "is a JSON dict"),
+        ({"kind": "offset"}, "is a JSON dict"),
         ([3], "Fault 1 of the truth is no JSON object"),
-        ([BIAS, {"kind": "bias"}], "Fault 2 of the truth has no field 'sensor'"),
+        ([BIAS, {"kind": "offset"}], "Fault 2 of the truth has no field 'sensor'"),
         ([BIAS | {"size": 1}], "unknown field 'size'"),
         ([BIAS | {"start_s": "1"}], "'start_s' is \"1\""),
         ([BIAS | {"magnitude": True}], "'magnitude' is true"),

@@ -76,9 +76,9 @@ def ubx(folder: Path) -> Path:
 
 
 def _raw(k: int) -> UBXMessage:
-    told: dict[str, float] = {"rcvTow": 1000.0 + k, "week": 2381, "leapS": 18, "numMeas": 3}
+    result: dict[str, float] = {"rcvTow": 1000.0 + k, "week": 2381, "leapS": 18, "numMeas": 3}
     for i, satellite in enumerate((7, 12, 30), 1):
-        told |= {
+        result |= {
             f"prMes_{i:02}": 2.1e7 + 100.5 * k + i,
             f"doMes_{i:02}": -500.25,
             f"gnssId_{i:02}": 0,
@@ -87,7 +87,7 @@ def _raw(k: int) -> UBXMessage:
             f"prStd_{i:02}": 5,
             f"prValid_{i:02}": 1,
         }
-    return UBXMessage("RXM", "RXM-RAWX", GET, **told)
+    return UBXMessage("RXM", "RXM-RAWX", GET, **result)
 
 
 def _fix(k: int) -> UBXMessage:

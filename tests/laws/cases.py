@@ -330,7 +330,7 @@ ALONE = {
     **HEIGHT,
     **DRIFTING,
     **FOLLOWERS,
-    **{name: functools.partial(navigating, name) for name in ("train", "lof-efd")},
+    **{name: functools.partial(navigating, name) for name in ("rail", "lof-efd")},
 }
 JOINT = tuple(name for name in METHODS if name not in {*PREDICTORS, *ALONE, *TWINS})
 NAMES = (*ZOO, *JOINT, *PREDICTORS, *ALONE)

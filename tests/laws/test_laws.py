@@ -15,7 +15,7 @@ from laws.damage import absent, alone, half, holed, lied, silenced, telling, tro
 from laws.walk import Walk, assert_close, assert_same, finite, walk
 from sensorfault.core.monitor import SUBJECTS, Monitor
 from sensorfault.core.types import FAULT, OK, UNKNOWN, Report, Sample
-from sensorfault.runtime.runners import Now, Stepper, fleet
+from sensorfault.runtime.runners import Stepper, StepResult, fleet
 from sensorfault.stages.threshold.fixed import Fixed
 
 
@@ -41,7 +41,7 @@ def trouble(case: Case) -> Walk:
 packing = jax.numpy_dtype_promotion("standard")
 
 
-def push(stream: Stepper, rows: Sample, k: int) -> Now:
+def push(stream: Stepper, rows: Sample, k: int) -> StepResult:
     """Row k of a log of NumPy arrays."""
     block = jax.tree.map(lambda x: x[k], rows.block)
     return stream.push(rows.time[k], rows.value[k], rows.fresh[k], block if jax.tree.leaves(block) else None)
@@ -57,23 +57,23 @@ def test_healthy_is_ok_and_a_lie_is_named(case: Case) -> None:
     assert (second == FAULT).mean() < 2 * (case.rate or 0.005)
     assert (second == OK).any(axis=0)[list(case.accused)].all()
     for c in case.accused:
-        told = walk(case.monitor, lied(case.rows, slice(k, k + 1), alone(case, c)))
-        assert told.channel[k, c] == FAULT
-        assert told.sensor[k, case.monitor.owner[c]] == FAULT
-        assert told.sample[k] == FAULT
-        assert not told.reports.trust.measured[k, c]
+        result = walk(case.monitor, lied(case.rows, slice(k, k + 1), alone(case, c)))
+        assert result.channel[k, c] == FAULT
+        assert result.sensor[k, case.monitor.owner[c]] == FAULT
+        assert result.sample[k] == FAULT
+        assert not result.reports.trust.measured[k, c]
 
 
 @every_case
 def test_masks_are_consistent(case: Case) -> None:
-    told, rows = trouble(case), troubled(case)
-    trust, fresh = told.reports.trust, np.asarray(rows.fresh) & np.isfinite(rows.value)
+    result, rows = trouble(case), troubled(case)
+    trust, fresh = result.reports.trust, np.asarray(rows.fresh) & np.isfinite(rows.value)
     assert not (trust.measured & ~fresh).any()
     assert not (trust.filled & trust.measured).any()
     assert not (trust.learn & ~trust.measured).any()
-    assert (told.channel[trust.learn] == OK).all()
-    assert not trust.learn[told.sample == FAULT].any()
-    assert (told.sensor == sensor_by_sensor(case.monitor.owner, told.channel)).all()
+    assert (result.channel[trust.learn] == OK).all()
+    assert not trust.learn[result.sample == FAULT].any()
+    assert (result.sensor == sensor_by_sensor(case.monitor.owner, result.channel)).all()
     assert np.isfinite(trust.value).all()
 
 
@@ -87,24 +87,24 @@ def sensor_by_sensor(owner: tuple[int, ...], channel: np.ndarray) -> np.ndarray:
 @every_case
 def test_stream_equals_replay(case: Case) -> None:
     """... and is compiled before the first sample comes."""
-    told, rows = trouble(case).reports, jax.tree.map(np.asarray, troubled(case))
+    result, rows = trouble(case).reports, jax.tree.map(np.asarray, troubled(case))
     with packing:
         stream = Stepper(case.monitor, jax.tree.map(lambda x: x[0], rows.block))
         with compilations() as made:
             answers = [push(stream, rows, k) for k in range(rows.time.size)]
     assert not made
     for k, now in enumerate(answers):
-        np.testing.assert_array_equal(now.channel, told.verdict.channel[k])
-        np.testing.assert_array_equal(now.sensor, told.verdict.sensor[k])
-        assert now.sample == told.verdict.sample[k]
+        np.testing.assert_array_equal(now.channel, result.verdict.channel[k])
+        np.testing.assert_array_equal(now.sensor, result.verdict.sensor[k])
+        assert now.sample == result.verdict.sample[k]
         assert_close(
             (now.score, now.limit, now.value, now.residual, now.silence),
             (
-                np.concatenate([np.where(score.valid[k], score.value[k], np.nan) for score in told.scores]),
-                np.concatenate([limit[k] for limit in told.limits]),
-                told.trust.value[k],
-                told.residual.value[k],
-                told.silence[k],
+                np.concatenate([np.where(score.valid[k], score.value[k], np.nan) for score in result.scores]),
+                np.concatenate([limit[k] for limit in result.limits]),
+                result.trust.value[k],
+                result.residual.value[k],
+                result.silence[k],
             ),
             case.tolerance,
         )
@@ -120,19 +120,19 @@ def test_two_lies_leave_the_same_filter_limits_and_weights(case: Case) -> None:
     for c in case.accused:
         small, big = (walk(case.monitor, lied(case.rows, slice(k, k + 1), n * alone(case, c))) for n in (1, 2))
         assert_same(small.reports.trust.measured[k], big.reports.trust.measured[k])
-        for told in (small, big):
-            assert not told.reports.trust.learn[k].any()
-        after_small, after_big = (jax.tree.map(lambda x: x[k], told.states) for told in (small, big))
+        for result in (small, big):
+            assert not result.reports.trust.learn[k].any()
+        after_small, after_big = (jax.tree.map(lambda x: x[k], result.states) for result in (small, big))
         assert_same(after_small.residual, after_big.residual)
         assert_same(case.learned(after_small), case.learned(after_big))
 
 
 @every_case
 def test_what_may_not_learn_does_not(case: Case) -> None:
-    told = trouble(case)
-    still = ~told.reports.trust.learn[1:].any(axis=1)
+    result = trouble(case)
+    still = ~result.reports.trust.learn[1:].any(axis=1)
     assert still.any()
-    for x in jax.tree.leaves(case.learned(told.states)):
+    for x in jax.tree.leaves(case.learned(result.states)):
         np.testing.assert_array_equal(x[1:][still], x[:-1][still])
 
 
@@ -173,36 +173,36 @@ def test_a_missing_channel_is_unknown_and_the_others_are_judged(case: Case, remo
     gone = slice(start, start + length)
     clean, time = healthy(case), np.asarray(case.rows.time)
     for c in range(case.channels):
-        told = walk(case.monitor, remove(case.rows, gone, c))
-        assert finite(told.states)
+        result = walk(case.monitor, remove(case.rows, gone, c))
+        assert finite(result.states)
         fresh = np.flatnonzero(np.asarray(case.rows.fresh)[:start, c])
         late = time[gone] - time[fresh[-1]] > case.hold_s[c] + 1e-9
         assert late.any()
-        assert (told.channel[gone, c][late] == UNKNOWN).all()
-        assert (told.sensor[gone, case.monitor.owner[c]][late] >= UNKNOWN).all()
+        assert (result.channel[gone, c][late] == UNKNOWN).all()
+        assert (result.sensor[gone, case.monitor.owner[c]][late] >= UNKNOWN).all()
         others = ~np.isin(np.arange(case.channels), (c, *case.lost.get(c, ())))
-        assert (told.channel[gone][:, others] != UNKNOWN)[clean.channel[gone][:, others] != UNKNOWN].all()
+        assert (result.channel[gone][:, others] != UNKNOWN)[clean.channel[gone][:, others] != UNKNOWN].all()
 
 
 @every_case
 def test_an_empty_sample_is_unknown(case: Case) -> None:
     k = half(case.rows) + 7
     long = slice(k, k + 40)
-    told = walk(case.monitor, silenced(case.rows, long))
-    assert finite(told.states)
+    result = walk(case.monitor, silenced(case.rows, long))
+    assert finite(result.states)
     late = np.asarray(case.rows.time)[long] - np.asarray(case.rows.time)[k - 1] > case.hold_s.max() + 1e-9
-    assert (told.channel[long][late] == UNKNOWN).all()
-    assert (told.sample[long][late] == UNKNOWN).all()
+    assert (result.channel[long][late] == UNKNOWN).all()
+    assert (result.sample[long][late] == UNKNOWN).all()
 
 
 @on(*names_with("block"))
 def test_a_hole_in_the_block_costs_one_sample(case: Case) -> None:
     k = telling(case)
-    told, clean = walk(case.monitor, holed(case.rows, k)), healthy(case)
-    assert finite(told.states)
-    assert not (told.channel[k] == FAULT).any()
+    result, clean = walk(case.monitor, holed(case.rows, k)), healthy(case)
+    assert finite(result.states)
+    assert not (result.channel[k] == FAULT).any()
     after = slice(k + 1, None)
-    assert (told.channel[after] == clean.channel[after]).mean() > 0.99
+    assert (result.channel[after] == clean.channel[after]).mean() > 0.99
 
 
 # 5. Channels have no order, vehicles have no neighbours.
@@ -212,14 +212,14 @@ def test_a_hole_in_the_block_costs_one_sample(case: Case) -> None:
 def test_permuted_channels_permute_the_verdicts(case: Case) -> None:
     assert case.permuted
     order = np.roll(np.arange(case.channels), 1)
-    rows, told = troubled(case), trouble(case)
+    rows, result = troubled(case), trouble(case)
     other = walk(
         case.permuted(order),
         rows._replace(value=rows.value[:, order], present=rows.present[:, order], fresh=rows.fresh[:, order]),
     )
-    np.testing.assert_array_equal(other.channel, told.channel[:, order])
-    np.testing.assert_array_equal(other.sample, told.sample)
-    assert_close(other.reports.residual.value, told.reports.residual.value[:, order], 1e-8)
+    np.testing.assert_array_equal(other.channel, result.channel[:, order])
+    np.testing.assert_array_equal(other.sample, result.sample)
+    assert_close(other.reports.residual.value, result.reports.residual.value[:, order], 1e-8)
 
 
 @every_case
@@ -243,10 +243,10 @@ def assert_fleet(case: Case, vehicles: int) -> None:
         return jax.tree.map(lambda *x: np.stack(x), *trees)
 
     state = case.monitor.init()
-    states, told = together(case.monitor, stack([state] * vehicles), stack(logs))
+    states, result = together(case.monitor, stack([state] * vehicles), stack(logs))
     for i, log in enumerate(logs):
         single = walk(case.monitor, log)
-        mine = jax.tree.map(lambda x, i=i: np.asarray(x[i]), told)
+        mine = jax.tree.map(lambda x, i=i: np.asarray(x[i]), result)
         alone_told = single.reports.verdict, single.reports.residual.value, single.reports.trust.value
         assert_close(mine, alone_told, case.tolerance)
         end = jax.tree.map(lambda x, i=i: np.asarray(x[i]), states)
@@ -281,13 +281,13 @@ def test_compilations_are_counted() -> None:
 # 8. It comes back.
 
 
-def assert_back(case: Case, told: Walk, end: int, rows: Sample | None = None) -> None:
+def assert_back(case: Case, result: Walk, end: int, rows: Sample | None = None) -> None:
     """From `back_s` after row `end`, the verdicts are those of the healthy run."""
     time = np.asarray((rows or case.rows).time)
     back = time > time[end] + case.back_s
     assert back.sum() >= 20, "the log ends too early to tell"
-    assert (told.channel[back] == healthy(case).channel[back]).mean() > 0.99
-    assert (told.channel[back] == OK).any(axis=0)[list(case.accused)].all()
+    assert (result.channel[back] == healthy(case).channel[back]).mean() > 0.99
+    assert (result.channel[back] == OK).any(axis=0)[list(case.accused)].all()
 
 
 @every_case
@@ -308,9 +308,9 @@ def test_back_after_a_gap_in_the_clock(case: Case) -> None:
 def test_back_after_a_long_fault(case: Case) -> None:
     start = telling(case)
     for c in case.accused:
-        told = walk(case.monitor, lied(case.rows, slice(start, start + 75), alone(case, c)))
-        assert told.channel[start, c] == FAULT
-        assert_back(case, told, start + 75)
+        result = walk(case.monitor, lied(case.rows, slice(start, start + 75), alone(case, c)))
+        assert result.channel[start, c] == FAULT
+        assert_back(case, result, start + 75)
 
 
 # 9. False alarms come as often as designed.

@@ -62,9 +62,9 @@ def test_telemetry_that_breaks_off_and_has_rubbish(tmp_path: Path) -> None:
     assert "breaks off inside the packet at byte" in read(put(tmp_path, whole[:-5], ".tlog")).damage[0]
     log = read(put(tmp_path, whole[:3000] + b"\xfe\xfd\x00" * 50 + whole[3000:], ".tlog"))
     assert log.duration_s == pytest.approx(9.9)
-    (told,) = log.damage
-    assert "bytes belong to no whole packet, the first at byte" in told
-    assert 2900 < int(told.split("at byte ")[1].split(";")[0]) <= 3000
+    (result,) = log.damage
+    assert "bytes belong to no whole packet, the first at byte" in result
+    assert 2900 < int(result.split("at byte ")[1].split(";")[0]) <= 3000
 
 
 def test_telemetry_whose_clock_jumps_by_a_day(tmp_path: Path) -> None:

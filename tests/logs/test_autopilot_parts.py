@@ -136,8 +136,8 @@ def test_a_description_that_nobody_understands_ends_the_log_there(tmp_path: Path
     odd = b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", 140, 15, b"ODD", b"I?", b"TimeMS,Value")
     at = CONTENT[".bin"].index(b"\xa3\x95\x84", 3 * len(CONTENT[".bin"]) // 4)
     path = put(tmp_path, ".bin", CONTENT[".bin"][:at] + odd + CONTENT[".bin"][at:])
-    (told,) = (note for note in assert_whole(path) if "not to be understood" in note)
-    assert at - 6000 < int(told.split("at byte ")[1].split(";")[0]) <= at
+    (result,) = (note for note in assert_whole(path) if "not to be understood" in note)
+    assert at - 6000 < int(result.split("at byte ")[1].split(";")[0]) <= at
     assert read(path).duration_s == pytest.approx(15, abs=2)
 
 
@@ -171,9 +171,9 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, suffix: str) -> None:
     vehicle = VehicleFile.parse(written_rig.VEHICLE)
     whole = detect(fitted.model(), read(path, vehicle)).events
     with small_parts(5000):
-        told = detect_long(fitted.model(), path, vehicle).events
-    assert len(told) == len(whole) > 5
-    for mine, theirs in zip(told, whole, strict=True):
+        result = detect_long(fitted.model(), path, vehicle).events
+    assert len(result) == len(whole) > 5
+    for mine, theirs in zip(result, whole, strict=True):
         assert (mine.sensor, mine.channel, mine.kind) == (theirs.sensor, theirs.channel, theirs.kind)
         assert (mine.start_s, mine.end_s) == pytest.approx((theirs.start_s, theirs.end_s), abs=1e-6)
 
@@ -189,8 +189,8 @@ def test_real_flights(real_data: Path, name: str) -> None:
         said = read_parts(path, parts.append, vehicle)
     assert len(parts) > 10
     time, value = np.concatenate([one.time for one in parts]), np.concatenate([one.value for one in parts])
-    told, mine = np.isfinite(whole.value).any(axis=1), np.isfinite(value).any(axis=1)
-    np.testing.assert_allclose(time[mine], whole.time[told], atol=1e-6)
-    np.testing.assert_array_equal(value[mine], whole.value[told])
+    result, mine = np.isfinite(whole.value).any(axis=1), np.isfinite(value).any(axis=1)
+    np.testing.assert_allclose(time[mine], whole.time[result], atol=1e-6)
+    np.testing.assert_array_equal(value[mine], whole.value[result])
     assert abs(len(time) - len(whole)) < 5
     assert said.damage == whole.damage

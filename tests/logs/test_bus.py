@@ -33,7 +33,7 @@ def test_groups_of_an_mdf_file_are_tables_with_clocks_of_their_own(tmp_path: Pat
 
 def test_the_process_that_reads_mdf_is_asked_for_stretches_of_time(tmp_path: Path) -> None:
     loaded = load_apart("mdf_load", written_bus.mdf(tmp_path / "drive.mf4"), 0)
-    assert loaded.told["parts"] == 1
+    assert loaded.result["parts"] == 1
     assert len(loaded.vectors["imu"]["ax"]) == written_bus.ROWS
 
 
@@ -51,7 +51,7 @@ def test_a_channel_with_fewer_values_than_its_clock_costs_its_group(
     monkeypatch.setattr(mdf_load, "_mdf", lambda path: file)
     loaded = mdf_load.load(str(tmp_path / "drive.mf4"))
     assert loaded.vectors.keys() == {"imu"}
-    assert loaded.told["lost"] == [["wheel", "its channel 'speed' has not as many values as its clock"]]
+    assert loaded.result["lost"] == [["wheel", "its channel 'speed' has not as many values as its clock"]]
 
 
 @pytest.mark.parametrize("write", [written_bus.blf, written_bus.asc])

@@ -21,8 +21,8 @@ def log(rows: int = 18) -> Log:
     value[1::EVERY, 7:16] = 100.0 + np.arange(rows)[1::EVERY, None] + np.arange(9)
     value[1 + EVERY :: EVERY, 16:] = 200.0 + np.arange(rows)[1 + EVERY :: EVERY, None] + np.arange(9)
     inertial = [Channel(path.split(".")[1], path.split(".")[0], "") for path in INERTIAL]
-    told = [Channel(name, one, "") for one in ("G01", "G02") for name in TOLD]
-    channels = (*inertial, Channel("speed", "wheel", "m/s"), *told)
+    result = [Channel(name, one, "") for one in ("G01", "G02") for name in TOLD]
+    channels = (*inertial, Channel("speed", "wheel", "m/s"), *result)
     sensors = tuple(Sensor(name, 0.1) for name in dict.fromkeys(channel.sensor for channel in channels))
     return Log(np.arange(rows) / 10, value, np.isfinite(value), channels, sensors, "hand")
 
@@ -122,12 +122,12 @@ def test_row_by_row_it_is_the_same() -> None:
     value = np.column_stack((whole.value, np.full(len(whole), np.nan)))[:, column]
     gather = Gather(own)
     cuts = [gather.push(t, row, np.ones(len(row), bool)) for t, row in zip(whole.time, value, strict=True)]
-    told = [cut for cut in cuts if cut is not None]
+    result = [cut for cut in cuts if cut is not None]
     epochs = own.frame(whole)
-    np.testing.assert_array_equal(np.concatenate([cut.time for cut in told]), epochs.time)
-    np.testing.assert_array_equal(np.concatenate([cut.value for cut in told]), epochs.value)
-    np.testing.assert_array_equal(np.concatenate([cut.fresh for cut in told]), epochs.fresh)
-    together = jax.tree.map(lambda *parts: np.concatenate(parts), *(cut.epoch for cut in told))
+    np.testing.assert_array_equal(np.concatenate([cut.time for cut in result]), epochs.time)
+    np.testing.assert_array_equal(np.concatenate([cut.value for cut in result]), epochs.value)
+    np.testing.assert_array_equal(np.concatenate([cut.fresh for cut in result]), epochs.fresh)
+    together = jax.tree.map(lambda *parts: np.concatenate(parts), *(cut.epoch for cut in result))
     jax.tree.map(np.testing.assert_array_equal, together, epochs.block)
 
 

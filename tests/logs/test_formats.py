@@ -10,7 +10,7 @@ from sensorfault.cli import cli, work
 from sensorfault.logs import VehicleFile, guess, read
 from sensorfault.logs.readers import formats
 from sensorfault.logs.readers.formats import Format, format_of
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
 
 DESCRIBED = '[file.log]\ntime = "t"\ntable = "b"\n[sensor.s.channel]\na = { column = "a", unit = "m/s" }\n'
 
@@ -22,7 +22,9 @@ def two_tables(path: Path, ask: Ask) -> Tables:
     frames = {name: pl.DataFrame({"t": time, "a": np.sin(time)}) for name in names}
     asked.append(ask.tables)
     tables = {name: Source(path, frame, "t", "s") for name, frame in frames.items()}
-    return told(tables, ["log.odd: topics of unknown type left out: /x."], [Damage("the file breaks off", "byte 7")])
+    return with_notes(
+        tables, ["log.odd: topics of unknown type left out: /x."], [Damage("the file breaks off", "byte 7")]
+    )
 
 
 asked: list[frozenset[str] | None] = []
@@ -63,9 +65,9 @@ def test_only_the_described_tables_are_read(odd: Path) -> None:
 
 
 def test_the_share_read_is_heard(odd: Path) -> None:
-    heard: list[float] = []
-    read(odd, VehicleFile.parse(DESCRIBED), tell=heard.append)
-    assert heard == [0.5]
+    received: list[float] = []
+    read(odd, VehicleFile.parse(DESCRIBED), tell=received.append)
+    assert received == [0.5]
 
 
 def test_init_tells_the_damage(odd: Path, capsys: pytest.CaptureFixture[str]) -> None:

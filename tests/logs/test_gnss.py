@@ -42,8 +42,8 @@ def test_ubx_says_what_pyubx2_says(tmp_path: Path) -> None:
     assert len(log) == len(said) == 12
     for i, satellite in enumerate(("G07", "G12", "G30"), 1):
         for ours, theirs in (("pseudorange_m", "prMes"), ("doppler_hz", "doMes"), ("cn0_dbhz", "cno")):
-            told = [getattr(message, f"{theirs}_{i:02}") for message in said]
-            np.testing.assert_array_equal(column(log, f"{satellite}.{ours}"), told)
+            result = [getattr(message, f"{theirs}_{i:02}") for message in said]
+            np.testing.assert_array_equal(column(log, f"{satellite}.{ours}"), result)
     assert column(log, "G07.sigma_m")[0] == pytest.approx(0.01 * 2**5)
     assert any("no whole ephemeris was broadcast" in note for note in log.notes)
     fixes = read_source(path, "NAV-PVT").frame
@@ -107,8 +107,8 @@ def test_ephemerides_beside_the_observations_give_the_places(tmp_path: Path) -> 
     place = np.stack([column(log, f"G07.{axis}_m") for axis in "xyz"], axis=1)
     np.testing.assert_allclose(np.linalg.norm(place, axis=1), 5153.7**2, rtol=0.011)
     sent = 1756036800.0 - 18 - 315964800.0 + 18 - column(log, "G07.pseudorange_m")[0] / C
-    told = read_nav(tmp_path / "site.nav").at("G07", np.array([sent]))
-    np.testing.assert_allclose(told.position, place[:1], atol=1.0)
+    result = read_nav(tmp_path / "site.nav").at("G07", np.array([sent]))
+    np.testing.assert_allclose(result.position, place[:1], atol=1.0)
     assert any("places are from site.nav" in note for note in log.notes)
     alone = read(tmp_path)  # the folder is one log: its navigation file is no log beside it
     assert [sensor.name for sensor in alone.sensors] == [sensor.name for sensor in log.sensors]
@@ -129,14 +129,14 @@ def test_corrected_ranges_hold_the_distance_and_the_receivers_clock() -> None:
     elevation, azimuth = sight.elevation_azimuth(receiver, kepler.position(sky, arrived - flight), axes)
     air = atmosphere.saastamoinen(MUNICH[0], 500.0, elevation)
     air = air + atmosphere.klobuchar(np.full(8, 1e-8), *MUNICH, elevation, azimuth, arrived % 604800)
-    heard = np.where(elevation > np.deg2rad(10), way + bias - C * kepler.clock(sky, arrived) + air, np.nan)
+    received = np.where(elevation > np.deg2rad(10), way + bias - C * kepler.clock(sky, arrived) + air, np.nan)
     # the receiver's clock is ahead, and so are its times
-    seen = Observed(arrived[:, 0] + bias / C, tuple(broadcast.satellites), {"pseudorange_m": heard})
+    seen = Observed(arrived[:, 0] + bias / C, tuple(broadcast.satellites), {"pseudorange_m": received})
     found = with_satellites(seen, broadcast).value
     left = found["corrected_m"] - way - bias
-    assert np.isfinite(left).sum() == np.isfinite(heard).sum() > 30
+    assert np.isfinite(left).sum() == np.isfinite(received).sum() > 30
     assert np.nanmax(np.abs(left)) < 0.02
-    np.testing.assert_allclose(found["elevation_rad"], np.where(np.isfinite(heard), elevation, np.nan), atol=1e-6)
+    np.testing.assert_allclose(found["elevation_rad"], np.where(np.isfinite(received), elevation, np.nan), atol=1e-6)
 
 
 def test_without_places_there_are_no_satellites(tmp_path: Path) -> None:
@@ -152,21 +152,21 @@ def test_a_foreign_ephemeris_is_left_out(tmp_path: Path) -> None:
     second = next(i for i, line in enumerate(lines) if line.startswith("G07 2025 08 24 14"))
     lines[second + 1] = lines[second + 1][:61] + f"{0.123:19.12e}\n"  # another place on the orbit
     path.write_text("".join(lines))
-    told = read_nav(path)
-    assert told.odd == ("G07",)
-    assert len(told.kepler["G07"].toe) == 2
+    result = read_nav(path)
+    assert result.odd == ("G07",)
+    assert len(result.kepler["G07"].toe) == 2
 
 
 def test_the_ionosphere_of_subframe_four() -> None:
-    told = (3, -2, 5, -7, 11, -13, 17, -19)
+    result = (3, -2, 5, -7, 11, -13, 17, -19)
     bits = "10001011" + "0" * 34 + "0" * 1 + "100" + "00" + "01" + f"{56:06b}"
-    bits += "".join(f"{one & 255:08b}" for one in told)
+    bits += "".join(f"{one & 255:08b}" for one in result)
     bits = bits.ljust(240, "0")
     words = tuple(int(bits[24 * i : 24 * i + 24], 2) << 6 for i in range(10))
     gather = Subframes("G")
     assert gather.take(words, 0.0) is None
     scales = 2.0 ** np.array([-30, -27, -24, -24, 11, 14, 16, 16])
-    np.testing.assert_array_equal(gather.klobuchar(), np.array(told) * scales)
+    np.testing.assert_array_equal(gather.klobuchar(), np.array(result) * scales)
 
 
 def test_several_seen_at_once_are_columns_of_their_own(tmp_path: Path) -> None:

@@ -75,12 +75,12 @@ def test_a_held_sensor_of_a_file(tmp_path: Path) -> None:
         '[sensor.gnss]\nheld = true\n#epoch\n[sensor.gnss.channel]\nspeed = { column = "speed", unit = "m/s" }\n'
     )
     blind = read(path, VehicleFile.parse(text))
-    told = read(path, VehicleFile.parse(text.replace("#epoch", 'epoch = "fix"')))
+    result = read(path, VehicleFile.parse(text.replace("#epoch", 'epoch = "fix"')))
     assert blind.fresh[:, 0].all()
-    np.testing.assert_array_equal(np.flatnonzero(told.fresh[:, 1]), np.arange(0, 500, 5))
-    missed = set(np.flatnonzero(told.fresh[:, 1])) - set(np.flatnonzero(blind.fresh[:, 1]))
+    np.testing.assert_array_equal(np.flatnonzero(result.fresh[:, 1]), np.arange(0, 500, 5))
+    missed = set(np.flatnonzero(result.fresh[:, 1])) - set(np.flatnonzero(blind.fresh[:, 1]))
     assert missed == set(range(105, 150, 5))
-    for log in (blind, told):
+    for log in (blind, result):
         assert log.sensors[1].period_s == pytest.approx(0.1)
         assert log.sensors[1].held
         assert any("'gnss' is held" in note for note in log.notes)

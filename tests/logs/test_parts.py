@@ -121,8 +121,8 @@ def test_a_topic_that_falls_silent_is_there_without_values(tmp_path: Path) -> No
     log = fitted.rig().between(end_s=40.0)
     value = np.where((log.time > 10)[:, None] & (np.arange(8) >= 6), np.nan, log.value)
     beside = write(replace(log, value=value, fresh=log.fresh & np.isfinite(value)), path)
-    told = beside.read_text().splitlines()
-    beside.write_text("\n".join(line for line in told if not line.startswith("period_s")))
+    result = beside.read_text().splitlines()
+    beside.write_text("\n".join(line for line in result if not line.startswith("period_s")))
     assert all(np.isnan(part.value[:, 6:]).all() for part in parts_of(path)[4:])
 
 

@@ -98,8 +98,8 @@ def test_every_table(real_data: Path) -> None:
             for channel in sensor.channels:
                 if "of_quaternion" in channel.column:
                     continue  # drawn from others
-                told = log.value[:, log.index(f"{sensor.name}.{channel.name}")]
-                told = told[np.isfinite(told)][[0, -1]]
+                result = log.value[:, log.index(f"{sensor.name}.{channel.name}")]
+                result = result[np.isfinite(result)][[0, -1]]
                 want = [first(raw[channel.column], rows, channel.missing) for rows in (rising, rising[::-1])]
                 want = np.multiply(want, SI[channel.unit])
-                np.testing.assert_allclose(told, want, rtol=1e-12, err_msg=f"{path} {channel.column}")
+                np.testing.assert_allclose(result, want, rtol=1e-12, err_msg=f"{path} {channel.column}")

@@ -97,12 +97,12 @@ def test_broadcast_orbits_are_metres_from_the_precise(real_data: Path) -> None:
         ("BRDC00WRD_U_20161580000_01D_MN.rnx", "E", 1.2, 15.0),
         ("BRDC00WRD_U_20161580000_01D_MN.rnx", "C", 5.0, 10.0),  # five geostationary
     ):
-        told = read_nav(real_data / POTSDAM / file)
-        names = [name for name in told.satellites if name in precise.satellites and name[0] == system]
+        result = read_nav(real_data / POTSDAM / file)
+        names = [name for name in result.satellites if name in precise.satellites and name[0] == system]
         away, clocks = [], []
         for name in names:
             i = precise.satellites.index(name)
-            found = told.at(name, precise.time)
+            found = result.at(name, precise.time)
             away.append(np.linalg.norm(found.position - precise.position[:, i], axis=1))
             relativity = -2 * (found.position * found.velocity).sum(axis=1) / C**2
             clocks.append(C * (found.clock - relativity - precise.clock[:, i]))

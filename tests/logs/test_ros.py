@@ -120,9 +120,9 @@ def test_a_recording_that_breaks_off_is_read_so_far_and_says_where(tmp_path: Pat
     at = len(whole) // 2
     log = parts(tmp_path, whole[:at], path.suffix)
     assert 1.0 < log.duration_s < 3.5
-    (told,) = log.damage
-    assert "breaks off, or holds what is no record, at byte" in told
-    assert 0 <= at - int(told.split("at byte ")[1].split(";")[0]) < (40_000 if "lz4" in way else 200_000)
+    (result,) = log.damage
+    assert "breaks off, or holds what is no record, at byte" in result
+    assert 0 <= at - int(result.split("at byte ")[1].split(";")[0]) < (40_000 if "lz4" in way else 200_000)
 
 
 @pytest.mark.parametrize("compression", [CompressionType.NONE, CompressionType.LZ4])

@@ -95,12 +95,12 @@ def test_satellites_of_a_receivers_log_have_their_places(tmp_path: Path) -> None
 
 @pytest.mark.real
 def test_what_beidou_really_sent_comes_through(real_data: Path) -> None:
-    told = read_nav(real_data / POTSDAM / "BRDC00WRD_U_20161580000_01D_MN.rnx")
-    names = [name for name in told.kepler if name[0] == "C"]
+    result = read_nav(real_data / POTSDAM / "BRDC00WRD_U_20161580000_01D_MN.rnx")
+    names = [name for name in result.kepler if name[0] == "C"]
     assert {"C01", "C05", "C11"} <= set(names)
     for name in names:
-        for row in range(len(told.kepler[name].toe)):
-            sent = Ephemeris(*(float(field[row]) for field in told.kepler[name]))
+        for row in range(len(result.kepler[name].toe)):
+            sent = Ephemeris(*(float(field[row]) for field in result.kepler[name]))
             exact = {field: getattr(sent, field) / unit for field, unit in UNITS.items()}
             numbers = {field: round(value) for field, value in exact.items()}
             # the file's numbers are whole ones of these units, to the twelve digits that it has
@@ -117,9 +117,9 @@ def test_what_beidou_really_sent_comes_through(real_data: Path) -> None:
 
 @pytest.mark.real
 def test_what_glonass_really_sent_comes_through(real_data: Path) -> None:
-    told = read_nav(real_data / POTSDAM / "brdc1580.16g")
-    assert len(told.glonass) > 20
-    for name, each in told.glonass.items():
+    result = read_nav(real_data / POTSDAM / "brdc1580.16g")
+    assert len(result.glonass) > 20
+    for name, each in result.glonass.items():
         for row in range(len(each.toe)):
             toe, offset, drift, place, speed, pull = (field[row] for field in each)
             exact = {

@@ -56,8 +56,8 @@ def test_a_log_that_breaks_off_is_read_so_far_and_says_where(tmp_path: Path, cut
     content = flight()
     log = read(put(tmp_path, content[:-cut]))
     assert log.duration_s > 9.9
-    (told,) = log.damage
-    assert f"flight.ulg: the file breaks off inside a message at byte {len(content) - cut};" in told
+    (result,) = log.damage
+    assert f"flight.ulg: the file breaks off inside a message at byte {len(content) - cut};" in result
 
 
 def test_rubbish_inside_is_passed_over_and_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

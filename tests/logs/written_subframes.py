@@ -139,8 +139,8 @@ def _sent(system: int, satellite: int, words: list[tuple[int, ...]]) -> list[UBX
 
 
 def _raw(second: float) -> UBXMessage:
-    told: dict[str, float] = {"rcvTow": second, "week": 2381, "leapS": 18, "numMeas": 2}
+    result: dict[str, float] = {"rcvTow": second, "week": 2381, "leapS": 18, "numMeas": 2}
     for i, (system, satellite) in enumerate(((6, 5), (3, 20)), 1):
-        told |= {f"prMes_{i:02}": 2.1e7, f"gnssId_{i:02}": system, f"svId_{i:02}": satellite}
-        told |= {f"cno_{i:02}": 40, f"prValid_{i:02}": 1}
-    return UBXMessage("RXM", "RXM-RAWX", GET, **told)
+        result |= {f"prMes_{i:02}": 2.1e7, f"gnssId_{i:02}": system, f"svId_{i:02}": satellite}
+        result |= {f"cno_{i:02}": 40, f"prValid_{i:02}": 1}
+    return UBXMessage("RXM", "RXM-RAWX", GET, **result)

@@ -44,13 +44,13 @@ def test_a_healthy_drive_has_no_events() -> None:
 @pytest.mark.parametrize(
     "fault",
     [
-        Fault("short", "gyro", "z", 340.0, 0.0, 10.0, sigmas=True),
-        Fault("short", "accelerometer", "x", 340.0, 0.0, 10.0, sigmas=True),
-        Fault("bias", "gnss", "latitude", UNDER_WAY, 20.0, 15 * METRE),
-        Fault("jam", "gyro", "y", 340.0, 4.0),
-        Fault("jam", "gnss", "latitude", UNDER_WAY, 4.0),
-        Fault("miss", "gnss", None, 340.0, 4.0),
-        Fault("miss", "accelerometer", None, 340.0, 4.0),
+        Fault("spike", "gyro", "z", 340.0, 0.0, 10.0, sigmas=True),
+        Fault("spike", "accelerometer", "x", 340.0, 0.0, 10.0, sigmas=True),
+        Fault("offset", "gnss", "latitude", UNDER_WAY, 20.0, 15 * METRE),
+        Fault("frozen", "gyro", "y", 340.0, 4.0),
+        Fault("frozen", "gnss", "latitude", UNDER_WAY, 4.0),
+        Fault("missing", "gnss", None, 340.0, 4.0),
+        Fault("missing", "accelerometer", None, 340.0, 4.0),
     ],
     ids=lambda fault: f"{fault.kind} {fault.where}",
 )

@@ -28,9 +28,9 @@ ONSET_S = 600.0
 @cache
 def flight() -> Log:
     """15 min on the ticks on which a height comes; errors are bounded, so that what is healthy stays as it was."""
-    told = fly(900.0, seed=7, imu_hz=10.0, gnss_hz=5.0, barometer_hz=10.0, beat_hz=0.0)
+    result = fly(900.0, seed=7, imu_hz=10.0, gnss_hz=5.0, barometer_hz=10.0, beat_hz=0.0)
     paths = ["gnss.altitude", "gnss.down", "barometer.altitude"]
-    log, truth = told.log.select(paths), told.truth.select(paths)
+    log, truth = result.log.select(paths), result.truth.select(paths)
     random = np.random.default_rng(0).uniform(-1, 1, log.value.shape)
     wander = np.sin(log.time[:, None] / np.array([11.0, 1.0, 17.0]))
     return replace(log, value=truth.value + [1.0, 0.1, 1.0] * wander + [0.3, 0.1, 0.5] * random)
@@ -45,13 +45,13 @@ def fitted(name: str) -> Model:
 def test_a_slow_ramp_is_found_and_the_barometer_stands_in(module) -> None:
     log = flight().between(400.0)
     wrong = inject(log, [Fault("drift", "gnss", "altitude", ONSET_S, 200.0, 0.5)]).log
-    told = detect(fitted(module.NAME), wrong)
-    events = [event for event in told.events if event.kind != "miss"]
+    result = detect(fitted(module.NAME), wrong)
+    events = [event for event in result.events if event.kind != "missing"]
     assert events[0].sensor == "gnss"
     assert ONSET_S < events[0].start_s < ONSET_S + 60.0
     at = (log.time > ONSET_S + 100.0) & (log.time < ONSET_S + 120.0) & log.fresh[:, 0]
     assert np.abs(wrong.value[at, 0] - log.value[at, 0]).min() > 49.0
-    assert np.nanmax(np.abs(told.repaired[at, 0] - log.value[at, 0])) < 15.0
+    assert np.nanmax(np.abs(result.repaired[at, 0] - log.value[at, 0])) < 15.0
 
 
 @pytest.mark.parametrize("module", RECIPES)
@@ -59,17 +59,17 @@ def test_a_drift_that_has_stopped_is_not_healed(module) -> None:
     """The slope is over as soon as the window holds nothing but the offset; the height is as wrong as before."""
     log = flight().between(400.0)
     ramp = Fault("drift", "gnss", "altitude", ONSET_S, 50.0, 0.5)
-    wrong = inject(log, [ramp, Fault("bias", "gnss", "altitude", ONSET_S + 50.0, 500.0, 25.0)]).log
-    told = detect(fitted(module.NAME), wrong)
+    wrong = inject(log, [ramp, Fault("offset", "gnss", "altitude", ONSET_S + 50.0, 500.0, 25.0)]).log
+    result = detect(fitted(module.NAME), wrong)
     late = log.time > ONSET_S + 60.0
-    assert (told.channel[late, 0] == FAULT).all()
-    assert np.nanmax(np.abs(told.repaired[late, 0] - log.value[late, 0])) < 10.0
+    assert (result.channel[late, 0] == FAULT).all()
+    assert np.nanmax(np.abs(result.repaired[late, 0] - log.value[late, 0])) < 10.0
 
 
 @pytest.mark.parametrize("module", RECIPES)
 def test_a_healthy_flight_has_no_event(module) -> None:
-    told = detect(fitted(module.NAME), flight().between(400.0))
-    assert not [event for event in told.events if event.kind != "miss"]
+    result = detect(fitted(module.NAME), flight().between(400.0))
+    assert not [event for event in result.events if event.kind != "missing"]
 
 
 @pytest.mark.parametrize("module", RECIPES)
@@ -83,8 +83,8 @@ def test_saved_and_loaded_it_says_the_same(module, tmp_path: Path) -> None:
 
 
 def test_between_two_beats_the_verdict_stands() -> None:
-    told = detect(fitted("slope"), flight().between(400.0))
-    assert (told.channel[told.log.time > 545.0, 0] == 0).all()
+    result = detect(fitted("slope"), flight().between(400.0))
+    assert (result.channel[result.log.time > 545.0, 0] == 0).all()
 
 
 def broken(log: Log) -> Log:

@@ -32,12 +32,12 @@ def fitted() -> Model:
     return METHODS["drone"].build(flight().between(end_s=FITTED_S), 0, SILENT)
 
 
-def told(*faults: Fault) -> Detection:
+def result(*faults: Fault) -> Detection:
     return detect(fitted(), inject(flight().between(FITTED_S), list(faults)).log)
 
 
 def accused(*faults: Fault) -> set[str | None]:
-    return {event.sensor for event in told(*faults).events}
+    return {event.sensor for event in result(*faults).events}
 
 
 def test_what_it_is_made_of() -> None:
@@ -48,17 +48,17 @@ def test_what_it_is_made_of() -> None:
 
 
 def test_a_healthy_flight_raises_nothing() -> None:
-    assert not told().events
+    assert not result().events
 
 
 def test_a_fault_of_each_sensor_is_laid_on_it() -> None:
     faults = (
         Fault("drift", "gnss", "altitude", ONSET_S, 60.0, 1 / 3),
-        Fault("bias", "gnss", "altitude", ONSET_S, 20.0, 15.0),
-        Fault("bias", "gnss", "latitude", ONSET_S, 20.0, 40 / 111e3),
-        Fault("jam", "gyro", None, ONSET_S, 10.0),
-        Fault("jam", "attitude", None, ONSET_S, 10.0),
-        Fault("miss", "barometer", None, ONSET_S, 10.0),
+        Fault("offset", "gnss", "altitude", ONSET_S, 20.0, 15.0),
+        Fault("offset", "gnss", "latitude", ONSET_S, 20.0, 40 / 111e3),
+        Fault("frozen", "gyro", None, ONSET_S, 10.0),
+        Fault("frozen", "attitude", None, ONSET_S, 10.0),
+        Fault("missing", "barometer", None, ONSET_S, 10.0),
     )
     for fault in faults:
         assert {fault.sensor} <= accused(fault) <= {fault.sensor, None}, fault
@@ -70,15 +70,15 @@ def test_a_barometer_against_a_receiver_is_unknown_which() -> None:
 
 
 def test_a_receiver_that_leads_height_and_climb_astray_is_not_laid_on_the_barometer() -> None:
-    both = Fault("drift", "gnss", "altitude", ONSET_S, 60.0, 0.5), Fault("bias", "gnss", "down", ONSET_S, 60.0, -0.5)
-    detection = told(*both)
+    both = Fault("drift", "gnss", "altitude", ONSET_S, 60.0, 0.5), Fault("offset", "gnss", "down", ONSET_S, 60.0, -0.5)
+    detection = result(*both)
     during = [event for event in detection.events if event.start_s < ONSET_S + 60.0]
     assert during
     assert "barometer" not in {event.sensor for event in detection.events}
 
 
 def test_height_is_rebuilt_from_the_barometer() -> None:
-    log, detection = flight().between(FITTED_S), told(Fault("drift", "gnss", "altitude", ONSET_S, 60.0, 0.5))
+    log, detection = flight().between(FITTED_S), result(Fault("drift", "gnss", "altitude", ONSET_S, 60.0, 0.5))
     c = log.index("gnss.altitude")
     rows = (log.time > ONSET_S + 40.0) & (log.time < ONSET_S + 60.0) & log.fresh[:, c]
     assert np.abs(detection.repaired[rows, c] - log.value[rows, c]).max() < 8.0  # 20 to 30 without

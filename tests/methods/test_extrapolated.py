@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.core.types import FAULT, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
@@ -28,18 +28,18 @@ def model(order: int) -> Model:
 @pytest.mark.parametrize("order", [0, 1])
 def test_each_joint_by_itself(order: int) -> None:
     log = run(seed=2)
-    told = replay_log(deaf(model(order).monitor), log)
+    result = replay_log(uncalibrated(model(order).monitor), log)
     x = log.value[:, :4]
     want = x[1:] - x[:-1] if order == 0 else x[2:] - (2 * x[1:-1] - x[:-2])
-    np.testing.assert_allclose(told.residual[1 + order :, :4], want, atol=1e-9)
-    assert (told.channel[: 1 + order] == UNKNOWN).all()
-    assert (told.channel[:, 4:] == UNKNOWN).all()
+    np.testing.assert_allclose(result.residual[1 + order :, :4], want, atol=1e-9)
+    assert (result.channel[: 1 + order] == UNKNOWN).all()
+    assert (result.channel[:, 4:] == UNKNOWN).all()
     assert model(order).watched == (True,) * 4 + (False,) * 2
 
 
 @pytest.mark.parametrize("order", [0, 1])
 def test_two_lie_and_two_are_accused(order: int) -> None:
-    faults = [Fault("bias", sensor, None, 0.05, 0.01, 0.5) for sensor in ("tachometer1", "encoder2")]
+    faults = [Fault("offset", sensor, None, 0.05, 0.01, 0.5) for sensor in ("tachometer1", "encoder2")]
     found = detect(model(order), inject(run(seed=2), faults).log)
     assert (found.channel[50:60, [0, 3]] == FAULT).all()
     assert not (found.channel[:, [1, 2]] == FAULT).any()

@@ -47,7 +47,7 @@ def test_the_catalog() -> None:
     gates = {f"chi-square-{filter}-{far}" for filter in ("ckf", "ackf") for far in ("05", "01")}
     learned = {"double-threshold", "anfis-cubature", "anfis-cubature-9m", "logistic-cubature"}
     of_ranges = {"cooperative", *gates, *learned}
-    of_satellites = {"train", "lof-efd", "innovation-chi-square", "averaged-innovation"}
+    of_satellites = {"rail", "lof-efd", "innovation-chi-square", "averaged-innovation"}
     others = {"bp-autoencoder", "online-network", "arm-kalman", *of_motion, *of_height, *of_ranges, *of_satellites}
     assert set(METHODS) == {*ON_THE_RIG, *OF_THE_POSITION, *others}
     assert DEFAULT == "relative-conditioning"
@@ -85,13 +85,13 @@ def test_the_model_of_the_first_part_is_that_of_a_log_which_ends_there() -> None
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.6])
 def test_the_summary_tells_how_it_was_fitted(share: float) -> None:
     model = fit(log(), held_out=share, seed=3)
-    told = model.summary
-    assert told["held_out_s"] == pytest.approx(share * 39.98, abs=0.05)
-    assert told["training_s"] == pytest.approx((1 - share) * 39.98, abs=0.05)
-    assert told["rows"] == pytest.approx(2000 * (1 - share), abs=2)
-    assert told["alarms_per_hour"] == told["held_out_alarms"] / (told["held_out_s"] / 3600)
-    assert (told["training_log"], told["seed"]) == ("rig 0", 3)
-    assert set(told["not_watched"]) == {"gnss.east", "gnss.north"}
+    result = model.summary
+    assert result["held_out_s"] == pytest.approx(share * 39.98, abs=0.05)
+    assert result["training_s"] == pytest.approx((1 - share) * 39.98, abs=0.05)
+    assert result["rows"] == pytest.approx(2000 * (1 - share), abs=2)
+    assert result["alarms_per_hour"] == result["held_out_alarms"] / (result["held_out_s"] / 3600)
+    assert (result["training_log"], result["seed"]) == ("rig 0", 3)
+    assert set(result["not_watched"]) == {"gnss.east", "gnss.north"}
     assert model.watched == (True,) * 6 + (False,) * 2
 
 
@@ -116,16 +116,16 @@ def test_every_method_finds_a_plain_fault_and_keeps_quiet_without(method: str) -
     value = fitted.unseen().value.copy()
     value[1000, 3] += 30.0
     events = detect(model, replace(fitted.unseen(), value=value)).events
-    assert [(e.sensor, e.channel, e.kind, e.method) for e in events] == [("accelerometer", "x", "short", method)]
+    assert [(e.sensor, e.channel, e.kind, e.method) for e in events] == [("accelerometer", "x", "spike", method)]
     assert events[0].start_s == events[0].end_s == fitted.unseen().time[1000]
 
 
 def test_progress_is_told_in_words() -> None:
-    told: list[str] = []
-    fit(log(), progress=told.append)
-    assert len(told) == 3
-    assert DEFAULT in told[0]
-    assert "held out" in told[-1]
+    result: list[str] = []
+    fit(log(), progress=result.append)
+    assert len(result) == 3
+    assert DEFAULT in result[0]
+    assert "held out" in result[-1]
 
 
 def sentence(log: Log, **how: object) -> str:
@@ -201,7 +201,7 @@ def test_a_constant_channel_is_watched_for_silence() -> None:
     moved[500, 3:6] = 99.0
     moved[1000:1200, 3:6] = np.nan
     events = detect(model, fitted.shifted(still, moved)).events
-    assert [(e.sensor, e.channel, e.kind) for e in events] == [("accelerometer", None, "miss")]
+    assert [(e.sensor, e.channel, e.kind) for e in events] == [("accelerometer", None, "missing")]
 
 
 def test_gaps_in_the_training_are_no_rows_of_it() -> None:

@@ -36,7 +36,7 @@ def test_noise_is_found() -> None:
 def test_a_drift_and_a_jam_are_laid_on_their_leaders(name) -> None:
     faults = [
         Fault("drift", "leader1", "range", 550.0, 70.0, 0.6),
-        Fault("bias", "leader2", "range", 700.0, 60.0, 40.0),
+        Fault("offset", "leader2", "range", 700.0, 60.0, 40.0),
     ]
     log = submerged(inject(missions.healthy().log, faults).log.between(LEARNED_S), (0, 1))
     events = detect(built(name), log).events
@@ -51,16 +51,16 @@ def test_a_drift_and_a_jam_are_laid_on_their_leaders(name) -> None:
 def test_a_frozen_range_is_named_though_it_is_near() -> None:
     """Where a leader keeps its distance a repeated range is right, and still no measurement."""
     log = missions.healthy().log
-    jam = Fault("jam", "leader2", "range", 600.0, 200.0)
-    told = detect(built("cooperative"), submerged(inject(log, [jam]).log.between(LEARNED_S), (0, 1)))
-    mine = [e for e in told.events if e.sensor == "leader2" and e.start_s > 600]
+    jam = Fault("frozen", "leader2", "range", 600.0, 200.0)
+    result = detect(built("cooperative"), submerged(inject(log, [jam]).log.between(LEARNED_S), (0, 1)))
+    mine = [e for e in result.events if e.sensor == "leader2" and e.start_s > 600]
     assert mine
-    assert "jam" in {e.kind for e in mine}
+    assert "frozen" in {e.kind for e in mine}
 
 
 def test_fixes_tell_the_errors_of_ranges() -> None:
     mission = missions.healthy()
-    bias = Fault("bias", "leader1", "range", 300.0, 100.0, 25.0)
+    bias = Fault("offset", "leader1", "range", 300.0, 100.0, 25.0)
     log = inject(mission.log, [bias]).log
     vehicle = cubature(log, followed("test", log), Filter()).vehicle
     error = surfaced(log, vehicle)

@@ -32,8 +32,8 @@ def small() -> Model:
     """Of the satellites of this log alone."""
     names = tuple(dict.fromkeys(c.sensor for c in log().channels if c.name == "corrected_m"))
     how = framing(log(), names, True)
-    heard = monitor(how, navigation(how, Filter()), one_by_one(how, len(names), 1e-4))
-    return model("innovation", log(), how, how.frame(log()), heard, ("w",), {})
+    calibrated = monitor(how, navigation(how, Filter()), one_by_one(how, len(names), 1e-4))
+    return model("innovation", log(), how, how.frame(log()), calibrated, ("w",), {})
 
 
 def test_live_says_row_by_row_what_the_log_says() -> None:
@@ -63,12 +63,12 @@ def test_saved_and_loaded_it_says_the_same(tmp_path: Path) -> None:
 def test_a_page_leaves_out_satellites_that_never_rose() -> None:
     names = ("G30", *small().framing.satellites)
     how = replace(small().framing, satellites=names)
-    heard = monitor(how, navigation(how, Filter()), one_by_one(how, len(names), 1e-4))
+    calibrated = monitor(how, navigation(how, Filter()), one_by_one(how, len(names), 1e-4))
     epochs = how.frame(log())
     epochs.value[:9, [2, 2 + len(names)]] = np.nan  # one that rises later stays
-    found = detect(model("innovation", log(), how, epochs, heard, ("w",), {}), epochs)
-    assert len(found.log.sensors) == len(found.heard.log.sensors) + 1
-    assert "G30" not in [sensor.name for sensor in found.heard.log.sensors]
-    assert found.heard.channel.shape == found.heard.repaired.shape == found.heard.log.value.shape
-    assert found.heard.sensor.shape[1] == len(found.heard.log.sensors)
-    np.testing.assert_array_equal(found.heard.sensor[-5:, 3], FAULT)
+    found = detect(model("innovation", log(), how, epochs, calibrated, ("w",), {}), epochs)
+    assert len(found.log.sensors) == len(found.calibrated.log.sensors) + 1
+    assert "G30" not in [sensor.name for sensor in found.calibrated.log.sensors]
+    assert found.calibrated.channel.shape == found.calibrated.repaired.shape == found.calibrated.log.value.shape
+    assert found.calibrated.sensor.shape[1] == len(found.calibrated.log.sensors)
+    np.testing.assert_array_equal(found.calibrated.sensor[-5:, 3], FAULT)

@@ -65,33 +65,33 @@ def drift(sensor: str, rate: float, channel: str = "altitude") -> Fault:
     return Fault("drift", sensor, channel, ONSET_S, LASTS_S, rate)
 
 
-def accused(told, paths: tuple[str, ...]) -> set[str]:
-    return {path for c, path in enumerate(paths) if (told.channel[:, c] == FAULT).any()}
+def accused(result, paths: tuple[str, ...]) -> set[str]:
+    return {path for c, path in enumerate(paths) if (result.channel[:, c] == FAULT).any()}
 
 
 def test_a_healthy_flight_is_ok() -> None:
     paths = (GNSS, DOWN, BARO, INS)
-    part, told = lied(paths=paths)
-    assert not told.events
+    part, result = lied(paths=paths)
+    assert not result.events
     late = part.time > FITTED_S + 70.0
-    assert (told.channel[late] == OK).mean() > 0.99
-    assert (told.channel[part.time < FITTED_S + 3.0] == UNKNOWN).all()
+    assert (result.channel[late] == OK).mean() > 0.99
+    assert (result.channel[part.time < FITTED_S + 3.0] == UNKNOWN).all()
 
 
 @pytest.mark.parametrize(("sensor", "path"), [("gnss", GNSS), ("barometer", BARO)])
 def test_a_slow_drift_of_20_m_is_laid_on_who_drifts_if_inertial_data_say_so(sensor: str, path: str) -> None:
     paths = (GNSS, BARO, INS)
-    part, told = lied(drift(sensor, 1 / 3), paths=paths)
-    assert accused(told, paths) == {path}
-    event = [event for event in told.events if event.sensor][-1]
+    part, result = lied(drift(sensor, 1 / 3), paths=paths)
+    assert accused(result, paths) == {path}
+    event = [event for event in result.events if event.sensor][-1]
     assert event.sensor == sensor
     assert ONSET_S < event.start_s < ONSET_S + 25.0
     # the other one stands in, while it lasts
     c, rows = paths.index(path), (part.time > event.start_s) & (part.time < ONSET_S + LASTS_S)
-    assert np.abs(told.repaired[rows, c] - part.value[rows, c]).max() < 2.0
+    assert np.abs(result.repaired[rows, c] - part.value[rows, c]).max() < 2.0
     # and it is all over soon after
     after = part.time > ONSET_S + LASTS_S + 20.0
-    assert (told.channel[after] == OK).mean() > 0.95
+    assert (result.channel[after] == OK).mean() > 0.95
 
 
 def test_a_chi_square_gate_lets_the_gps_lead_it_and_blames_the_barometer() -> None:
@@ -105,24 +105,24 @@ def test_a_chi_square_gate_lets_the_gps_lead_it_and_blames_the_barometer() -> No
     monitor = Monitor(filter, (gate,), Exceed(), Drop(), jnp.asarray(hold_s(whole)), owner, most=1)
     healthy = np.nanmax(np.asarray(replay_log(monitor, whole).scores[0])[50:], axis=0)
     gated = replace(monitor, branches=(replace(gate, threshold=Fixed(jnp.asarray(1.02 * healthy))),))
-    both = Fault("bias", "gnss", "down", ONSET_S, LASTS_S, -1 / 3)  # a receiver that drifts believes its own climb
-    told = replay_log(gated, inject(part, [drift("gnss", 1 / 3), both]).log)
-    first = [np.flatnonzero(told.channel[:, c] == FAULT) for c in range(channels)]
+    both = Fault("offset", "gnss", "down", ONSET_S, LASTS_S, -1 / 3)  # a receiver that drifts believes its own climb
+    result = replay_log(gated, inject(part, [drift("gnss", 1 / 3), both]).log)
+    first = [np.flatnonzero(result.channel[:, c] == FAULT) for c in range(channels)]
     assert first[2].size
     assert all(not other.size or other[0] > first[2][0] for other in first[:1])
 
 
 def test_unknown_which_when_nobody_else_knows() -> None:
     """Two heights alone; and with a receiver whose speed follows its height."""
-    both = Fault("bias", "gnss", "down", ONSET_S, LASTS_S, -1.0)
+    both = Fault("offset", "gnss", "down", ONSET_S, LASTS_S, -1.0)
     for paths, faults in (((GNSS, BARO), ()), ((GNSS, DOWN, BARO), (both,))):
         for sensor in ("gnss", "barometer"):
-            part, told = lied(drift(sensor, 1.0), *(faults if sensor == "gnss" else ()), paths=paths)
+            part, result = lied(drift(sensor, 1.0), *(faults if sensor == "gnss" else ()), paths=paths)
             during = (part.time > ONSET_S + 15.0) & (part.time < ONSET_S + LASTS_S - 1.0)
-            assert not (told.channel[during] == FAULT).any()
-            assert (told.sample[during] == FAULT).all()
-            assert (told.channel[during][:, paths.index(BARO)] == UNKNOWN).all()
-            assert {(event.sensor, event.kind) for event in told.events if event.start_s < ONSET_S + LASTS_S - 1} == {
+            assert not (result.channel[during] == FAULT).any()
+            assert (result.sample[during] == FAULT).all()
+            assert (result.channel[during][:, paths.index(BARO)] == UNKNOWN).all()
+            assert {(event.sensor, event.kind) for event in result.events if event.start_s < ONSET_S + LASTS_S - 1} == {
                 (None, "unknown")
             }
 
@@ -139,46 +139,46 @@ def test_a_receiver_is_one_even_where_the_log_has_its_height_and_speed_as_two() 
     model = build(apart.between(end_s=FITTED_S), 0, SILENT)
     faults = [
         Fault("drift", "gps_height", "altitude", ONSET_S, LASTS_S, 1.0),
-        Fault("bias", "gps_velocity", "down", ONSET_S, LASTS_S, -1.0),
+        Fault("offset", "gps_velocity", "down", ONSET_S, LASTS_S, -1.0),
     ]
-    told = detect(model, inject(apart.between(FITTED_S), faults).log)
-    assert "barometer" not in {event.sensor for event in told.events}
-    during = (told.log.time > ONSET_S + 15.0) & (told.log.time < ONSET_S + LASTS_S - 1.0)
-    assert (told.sample[during] == FAULT).all()
+    result = detect(model, inject(apart.between(FITTED_S), faults).log)
+    assert "barometer" not in {event.sensor for event in result.events}
+    during = (result.log.time > ONSET_S + 15.0) & (result.log.time < ONSET_S + LASTS_S - 1.0)
+    assert (result.sample[during] == FAULT).all()
 
 
 def test_two_of_one_sensor_that_disagree_accuse_it() -> None:
     """Without a barometer the receiver's own speed tells that something is wrong with the receiver."""
-    _, told = lied(drift("gnss", 1.0), paths=(GNSS, DOWN))
-    assert {event.sensor for event in told.events} == {"gnss"}
+    _, result = lied(drift("gnss", 1.0), paths=(GNSS, DOWN))
+    assert {event.sensor for event in result.events} == {"gnss"}
 
 
 def test_a_jump_is_told_at_once() -> None:
-    _, told = lied(Fault("bias", "gnss", "altitude", ONSET_S, 20.0, 15.0), paths=(GNSS, DOWN, BARO, INS))
-    assert {event.sensor for event in told.events if event.sensor} == {"gnss"}
-    assert told.events[0].start_s < ONSET_S + 2.0
-    soon = np.abs(told.log.time - ONSET_S - 10.0) < 7.0
-    np.testing.assert_array_equal((told.channel[soon] == FAULT).all(axis=0), [True, False, False, False])
+    _, result = lied(Fault("offset", "gnss", "altitude", ONSET_S, 20.0, 15.0), paths=(GNSS, DOWN, BARO, INS))
+    assert {event.sensor for event in result.events if event.sensor} == {"gnss"}
+    assert result.events[0].start_s < ONSET_S + 2.0
+    soon = np.abs(result.log.time - ONSET_S - 10.0) < 7.0
+    np.testing.assert_array_equal((result.channel[soon] == FAULT).all(axis=0), [True, False, False, False])
 
 
 def test_a_witness_set_anew_is_believed_again() -> None:
     """After five minutes, and another to fill the memory: the barometer's setting was changed for good."""
     paths = (GNSS, BARO, INS)
-    part, told = lied(Fault("bias", "barometer", "altitude", ONSET_S, 1e3, 15.0), paths=paths)
-    assert accused(told, paths) == {BARO}
+    part, result = lied(Fault("offset", "barometer", "altitude", ONSET_S, 1e3, 15.0), paths=paths)
+    assert accused(result, paths) == {BARO}
     since = part.time - ONSET_S
-    assert (told.channel[(since > 10.0) & (since < 60.0), 1] == FAULT).all()
-    assert (told.sample[(since > 10.0) & (since < 280.0)] == FAULT).all()  # later the inertial speed's bias hides who
-    assert (told.channel[since > 400.0] == OK).all()
+    assert (result.channel[(since > 10.0) & (since < 60.0), 1] == FAULT).all()
+    assert (result.sample[(since > 10.0) & (since < 280.0)] == FAULT).all()  # later the inertial speed's bias hides who
+    assert (result.channel[since > 400.0] == OK).all()
 
 
 def test_a_vertical_speed_is_named_and_believed_again() -> None:
     """What it added up to while it lied stays wrong."""
     paths = (GNSS, DOWN, BARO)
-    part, told = lied(Fault("bias", "gnss", "down", ONSET_S, 20.0, 2.0), paths=paths)
-    assert accused(told, paths) == {DOWN}
-    assert (told.channel[np.abs(part.time - ONSET_S - 14.0) < 5.0][:, 1] == FAULT).all()
-    assert (told.channel[part.time > ONSET_S + 20.0 + 75.0] == OK).all()
+    part, result = lied(Fault("offset", "gnss", "down", ONSET_S, 20.0, 2.0), paths=paths)
+    assert accused(result, paths) == {DOWN}
+    assert (result.channel[np.abs(part.time - ONSET_S - 14.0) < 5.0][:, 1] == FAULT).all()
+    assert (result.channel[part.time > ONSET_S + 20.0 + 75.0] == OK).all()
 
 
 def test_what_cannot_be_compared_is_said() -> None:
@@ -201,9 +201,9 @@ def test_on_real_flights() -> None:
         for rate in (0.3, 1.0):
             size = rate * (1e3 if height.unit == "mm" else 1.0)
             ramp = Fault("drift", "gnss", "altitude", float(rest.time[0]) + 140.0, 90.0, size)
-            told = replay_log(model.monitor, inject(rest, [ramp]).log)
-            wrong = [c.path for i, c in enumerate(whole.channels) if (told.channel[:, i] == FAULT).any()]
-            assert (told.sample == FAULT).any()
+            result = replay_log(model.monitor, inject(rest, [ramp]).log)
+            wrong = [c.path for i, c in enumerate(whole.channels) if (result.channel[:, i] == FAULT).any()]
+            assert (result.sample == FAULT).any()
             assert set(wrong) <= {GNSS, DOWN}
 
 
@@ -214,6 +214,6 @@ def test_copters_raise_nothing(real_data: Path) -> None:
         whole = read(path, guess(path))
         half = float(whole.time[0]) + whole.duration_s / 2
         model, rest = build(whole.between(end_s=half), 0, SILENT), whole.between(half)
-        told = replay_log(model.monitor, rest)
-        assert not (told.sample == FAULT).any()
-        assert (told.sample == OK).mean() > 0.8
+        result = replay_log(model.monitor, rest)
+        assert not (result.sample == FAULT).any()
+        assert (result.sample == OK).mean() > 0.8

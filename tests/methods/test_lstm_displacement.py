@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.position import lstm_displacement
 from sensorfault.runtime.detect import detect
@@ -51,14 +51,14 @@ def test_a_frozen_position_is_found() -> None:
 
 
 def test_the_newest_second_of_the_position_has_no_say_in_what_is_expected() -> None:
-    told, clean = (replay_log(deaf(model().monitor), one) for one in (frozen()[0], log()))
+    result, clean = (replay_log(uncalibrated(model().monitor), one) for one in (frozen()[0], log()))
     jammed, span = frozen()
     columns = [log().index(path) for path in POSITION]
     # what was expected = what was measured - what was left of it
     soon = slice(span.start + 1, span.start + 40)
-    expected = (jammed.value - told.residual)[soon][:, columns]
+    expected = (jammed.value - result.residual)[soon][:, columns]
     want = (log().value - clean.residual)[soon][:, columns]
-    valid = told.valid[soon][:, columns]
+    valid = result.valid[soon][:, columns]
     assert valid.any()
     np.testing.assert_allclose(expected[valid], want[valid], rtol=0, atol=1e-12)
 

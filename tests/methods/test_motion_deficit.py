@@ -45,7 +45,7 @@ def position_faults(found: Detection) -> np.ndarray:
 
 
 def frozen(start_s: float, length_s: float, *channels: str) -> list[Fault]:
-    return [Fault("jam", "gnss", name, start_s, length_s) for name in channels or ("latitude", "longitude")]
+    return [Fault("frozen", "gnss", name, start_s, length_s) for name in channels or ("latitude", "longitude")]
 
 
 def test_a_healthy_drive_is_ok_standing_or_not() -> None:
@@ -64,8 +64,8 @@ def test_a_jam_is_found_at_once_and_over_with_its_end(repeats: bool) -> None:
     assert UNDER_WAY + 4.8 <= at[-1] <= UNDER_WAY + 5.2
     assert len(at) > 4.4 / log().period_s
     events = detect(model(repeats), struck).events
-    assert {event.kind for event in events} == {"jam"}
-    assert all("latitude" in told or "longitude" in told for told in (event.channel or "" for event in events))
+    assert {event.kind for event in events} == {"frozen"}
+    assert all("latitude" in result or "longitude" in result for result in (event.channel or "" for event in events))
 
 
 def test_a_jam_that_dithers_is_found_by_the_missing_way() -> None:
@@ -92,7 +92,7 @@ def test_the_stand_in_goes_on_while_the_position_is_frozen() -> None:
 
 
 def test_an_offset_is_found_and_only_trusted_fixes_are_references() -> None:
-    struck = inject(rest(), [Fault("bias", "gnss", "latitude", UNDER_WAY, 6.0, 30 * METRE)]).log
+    struck = inject(rest(), [Fault("offset", "gnss", "latitude", UNDER_WAY, 6.0, 30 * METRE)]).log
     at = position_faults(detect(model(), struck))
     assert at[0] <= UNDER_WAY + 0.2
     # a reference taken from the lie would call it healthy after a second
@@ -100,7 +100,7 @@ def test_an_offset_is_found_and_only_trusted_fixes_are_references() -> None:
 
 
 def test_a_long_offset_is_no_lock_out() -> None:
-    struck = inject(log().between(FIRST), [Fault("bias", "gnss", "latitude", 200.0, 200.0, 2000 * METRE)]).log
+    struck = inject(log().between(FIRST), [Fault("offset", "gnss", "latitude", 200.0, 200.0, 2000 * METRE)]).log
     found = detect(model(), struck)
     at = position_faults(found)
     assert at[0] <= 200.3
@@ -199,6 +199,6 @@ def test_a_receiver_of_one_hertz() -> None:
     part = slow.between(FIRST, LAST)
     assert not (detect(model, part).channel[:, LATITUDE] == FAULT).any()
     found = position_faults(
-        detect(model, inject(part, [Fault("bias", "gnss", "latitude", 240.0, 10.0, 40 * METRE)]).log)
+        detect(model, inject(part, [Fault("offset", "gnss", "latitude", 240.0, 10.0, 40 * METRE)]).log)
     )
     assert 240.0 <= found.min() < 242.0

@@ -64,7 +64,7 @@ def test_a_slow_drift_is_found_and_health_is_not(name: str) -> None:
 @pytest.mark.parametrize("name", MODELS)
 def test_what_stands_in_is_nearer_than_what_is_measured(name: str) -> None:
     unseen = log().between(LEARN_S)
-    step = Fault("bias", "gnss", "altitude", ONSET_S, 8.0, 6.0)
+    step = Fault("offset", "gnss", "altitude", ONSET_S, 8.0, 6.0)
     found = detect(MODELS[name](), inject(unseen, [step]).log)
     wrong = (unseen.time >= ONSET_S) & (unseen.time < ONSET_S + 8.0)
     assert (found.channel[wrong, flown.HEIGHT] == FAULT).all()
@@ -99,8 +99,8 @@ def test_heights_on_a_faster_clock_are_the_same_heights() -> None:
     steps = [np.asarray(model.monitor.residual.steps) for model in on_both]
     np.testing.assert_array_equal(*steps)
     drift = Fault("drift", "gnss", "altitude", 60.0, 30.0, 0.3)
-    told = [detect(on_both[0], inject(one, [drift]).log) for one in (fast,)]
-    score = told[0].traces[2].score
+    result = [detect(on_both[0], inject(one, [drift]).log) for one in (fast,)]
+    score = result[0].traces[2].score
     assert np.isfinite(score[:: round(flown.FIX_S * 25)][13:]).all()
     assert np.isnan(np.delete(score, np.s_[:: round(flown.FIX_S * 25)])).all()
 

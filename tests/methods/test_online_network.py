@@ -83,12 +83,12 @@ def test_against_what_it_has_lately_been_a_shaking_arm_is_no_fault() -> None:
 
 def test_from_scratch_it_is_unknown_until_it_has_learned() -> None:
     part = log().between(HEALTHY_S)
-    told = detect(fitted(scratch=True), part)
-    known = (told.channel[:, :4] != UNKNOWN).all(axis=1)
+    result = detect(fitted(scratch=True), part)
+    known = (result.channel[:, :4] != UNKNOWN).all(axis=1)
     first = int(np.argmax(known))
     assert LEARNING.warm < first < 100
     assert not known[:first].any()
-    assert (told.channel[first:, :4] == OK).mean() > 0.5
+    assert (result.channel[first:, :4] == OK).mean() > 0.5
 
 
 def test_a_group_of_what_cannot_be_foretold() -> None:

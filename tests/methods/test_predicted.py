@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.position import ar_predictor, linear_extrapolation, lstm_predictor, persistence
 from sensorfault.methods.position.predicted import GAP
@@ -47,24 +47,24 @@ def columns() -> list[int]:
     return [log().index(path) for path in SEEN]
 
 
-def scaled(told: Log, like: Log) -> np.ndarray:
+def scaled(result: Log, like: Log) -> np.ndarray:
     """What each channel held at each tick, mapped to [-1, 1] by the extremes of `like`."""
-    held = np.full((len(told), 8), np.nan)
+    held = np.full((len(result), 8), np.nan)
     for v, c in enumerate(columns()):
         seen = like.value[like.fresh[:, c], c]
         low, high = seen.min(), seen.max()
         last = (low + high) / 2
-        for k in range(len(told)):
-            if told.fresh[k, c]:
-                last = told.value[k, c]
+        for k in range(len(result)):
+            if result.fresh[k, c]:
+                last = result.value[k, c]
             held[k, v] = 2 * (last - low) / (high - low) - 1
     return held
 
 
-def windows(told: Log, like: Log) -> tuple[np.ndarray, np.ndarray]:
+def windows(result: Log, like: Log) -> tuple[np.ndarray, np.ndarray]:
     """The ticks with a fix and enough before them, and their windows, flat."""
-    held = scaled(told, like)
-    ticks = [k for k in range(LENGTH, len(told)) if told.fresh[k, columns()[0]]]
+    held = scaled(result, like)
+    ticks = [k for k in range(LENGTH, len(result)) if result.fresh[k, columns()[0]]]
     return np.array(ticks), np.array([held[k - LENGTH : k].ravel() for k in ticks])
 
 
@@ -74,7 +74,7 @@ def test_the_autoregression_is_least_squares() -> None:
     assert isinstance(residual, Prediction)
     assert residual.inputs == tuple(columns())
     ticks, x = windows(log(), log())
-    whole = replay_log(deaf(fitted.monitor), log()).valid[ticks, columns()[0]]
+    whole = replay_log(uncalibrated(fitted.monitor), log()).valid[ticks, columns()[0]]
     assert whole.mean() > 0.95
     ticks, x = ticks[whole], np.column_stack([x, np.ones(len(x))])[whole]
     y = scaled(log(), log())[ticks][:, :2]
@@ -97,41 +97,41 @@ def test_a_prediction_is_made_from_the_window_before(method: str) -> None:
     fresh[700:720, columns()[3]] = False
     time[2000:] += 20 * log().period_s
     broken = replace(log(), value=value, fresh=fresh, time=time)
-    told = replay_log(deaf(fitted.monitor), broken)
+    result = replay_log(uncalibrated(fitted.monitor), broken)
     ticks, x = windows(broken, log())
     net = jax.jit(fitted.monitor.residual.network.__call__)
     low, high = (getattr(log().value[log().fresh[:, fix[0]]][:, fix], f)(axis=0) for f in ("min", "max"))
-    tested = np.flatnonzero(told.valid[:, fix[0]])
-    assert (told.valid[:, fix[0]] == told.valid[:, fix[1]]).all()
-    assert not told.valid[:, [c for c in range(len(log().channels)) if c not in fix]].any()
+    tested = np.flatnonzero(result.valid[:, fix[0]])
+    assert (result.valid[:, fix[0]] == result.valid[:, fix[1]]).all()
+    assert not result.valid[:, [c for c in range(len(log().channels)) if c not in fix]].any()
     for k in tested[::40]:
         row = x[np.flatnonzero(ticks == k)[0]].reshape(LENGTH, 8)
         want = broken.value[k, fix] - (low + (np.asarray(net(jnp.asarray(row))) + 1) / 2 * (high - low))
-        np.testing.assert_allclose(told.residual[k, fix], want, rtol=1e-7, atol=1e-13)
+        np.testing.assert_allclose(result.residual[k, fix], want, rtol=1e-7, atol=1e-13)
     # unknown until the window is full again: from the first fix after the start, the spell and the gap in the clock
     for start in (0, 1300, 2000):
         first = start + int(np.flatnonzero(fresh[start:, fix[0]])[0])
         again = tested[tested >= start][0]
         assert first + LENGTH <= again < first + LENGTH + 5
-    assert not told.valid[1200:1300].any()
+    assert not result.valid[1200:1300].any()
     assert np.isin(ticks[(ticks > 10) & (ticks < 1200)], tested).mean() > 0.99
 
 
 @pytest.mark.parametrize("order", [0, 1])
 def test_an_extrapolation_goes_through_the_last_fixes(order: int) -> None:
     fitted = model("linear-extrapolation" if order else "persistence")
-    told = replay_log(deaf(fitted.monitor), log())
+    result = replay_log(uncalibrated(fitted.monitor), log())
     c = columns()[1]
     ticks = np.flatnonzero(log().fresh[:, c])
     y, t = log().value[ticks, c], log().time[ticks]
     want = y[2:] - y[1:-1]
     if order:
         want = want - (y[1:-1] - y[:-2]) / (t[1:-1] - t[:-2]) * (t[2:] - t[1:-1])
-    tested = told.valid[ticks[2:], c]
+    tested = result.valid[ticks[2:], c]
     # not after a spell without fixes, of which this drive has one or two
     assert 0.97 < tested.mean() <= 1
-    assert not np.delete(told.valid[:, c], ticks[1:]).any()
-    np.testing.assert_allclose(told.residual[ticks[2:], c][tested], want[tested], rtol=1e-9, atol=1e-14)
+    assert not np.delete(result.valid[:, c], ticks[1:]).any()
+    np.testing.assert_allclose(result.residual[ticks[2:], c][tested], want[tested], rtol=1e-9, atol=1e-14)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -142,12 +142,12 @@ def test_the_date_line_is_a_place_like_any_other(method: str) -> None:
     assert np.ptp(there.value[:, longitude]) > 6, "it never crosses"
     fitted = model(method, 51.05, 180.0)
     assert detect(fitted, there).events == ()
-    told = replay_log(deaf(fitted.monitor), there)
-    assert np.abs(told.residual[told.valid]).max() < 1e-3
+    result = replay_log(uncalibrated(fitted.monitor), there)
+    assert np.abs(result.residual[result.valid]).max() < 1e-3
     if method != "lstm-predictor":
-        same = replay_log(deaf(model(method).monitor), log())
-        np.testing.assert_array_equal(told.valid, same.valid)
-        np.testing.assert_allclose(told.residual, same.residual, atol=2e-9)
+        same = replay_log(uncalibrated(model(method).monitor), log())
+        np.testing.assert_array_equal(result.valid, same.valid)
+        np.testing.assert_allclose(result.residual, same.residual, atol=2e-9)
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -35,17 +35,17 @@ def _ten(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_satellite_that_lies_is_named_and_nobody_else() -> None:
-    model = fit(small(ride(110.0, 3, imu_hz=10).log), "train", held_out=0.0)
+    model = fit(small(ride(110.0, 3, imu_hz=10).log), "rail", held_out=0.0)
     assert model.monitor.residual.bank
     at_once, later = model.summary["smallest_step_m"].values()
     assert 5.0 < later < at_once < 100.0
     assert model.summary["noise_factor"] == pytest.approx(0.85, abs=0.25)
 
     log = small(ride(110.0, 4, imu_hz=10).log)
-    heard = [i for i, channel in enumerate(log.channels) if channel.name == RANGE]
-    steady = log.channels[max(heard, key=lambda i: int(log.fresh[:, i].sum()))].sensor
+    calibrated = [i for i, channel in enumerate(log.channels) if channel.name == RANGE]
+    steady = log.channels[max(calibrated, key=lambda i: int(log.fresh[:, i].sum()))].sensor
     assert detect(model, log).events == ()
-    done = inject(log, [Fault("bias", steady, RANGE, 50.0, 40.0, 3 * at_once)], 0)
+    done = inject(log, [Fault("offset", steady, RANGE, 50.0, 40.0, 3 * at_once)], 0)
     (event,) = detect(model, done.log).events
     assert event.sensor == steady
     assert event.start_s == pytest.approx(50.0, abs=1.0)

@@ -82,13 +82,13 @@ def test_its_gradient_is_that_of_differences(kind: str) -> None:
     slope = jax.tree.map(lambda x: np.asarray(x).sum(axis=0), slopes(anfis, jnp.asarray(seen))[1])
     for name in ("center", "width", "slope"):
         for p in range(6):
-            told = []
+            result = []
             for step in (1e-6, -1e-6):
                 moved = np.array(getattr(anfis.premises, name))
                 moved[p] += step
                 other = replace(anfis, premises=replace(anfis.premises, **{name: moved}))
-                told.append(sum(by_hand(other, row) for row in seen))
-            want = 0.0 if name == "slope" and kind != "bell" else (told[0] - told[1]) / 2e-6
+                result.append(sum(by_hand(other, row) for row in seen))
+            want = 0.0 if name == "slope" and kind != "bell" else (result[0] - result[1]) / 2e-6
             assert abs(float(getattr(slope.premises, name)[p]) - want) < 1e-5, (name, p)
 
 
@@ -100,8 +100,8 @@ def test_nothing_makes_it_other_than_a_number(kind: str, log: bool) -> None:
     center = LOW + SPAN * np.asarray(anfis.premises.center)[[0, 2, 4]]
     extremes = jnp.asarray(np.array([center, np.zeros(3), np.full(3, 1e308), np.full(3, np.inf), [1e308, 0, 9]]))
     for one in (anfis, narrow):
-        told, slope = slopes(one, extremes)
-        assert np.isfinite(told).all()
+        result, slope = slopes(one, extremes)
+        assert np.isfinite(result).all()
         assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(slope.premises))
 
 
@@ -116,8 +116,8 @@ def test_where_no_triangle_reaches_the_nearest_rule_speaks() -> None:
 
 def test_a_range_ends_where_nothing_was_learned() -> None:
     unit = UnitRange(jnp.asarray([2.0]), jnp.asarray([4.0]), jnp.asarray(0.5))
-    told = [float(unit(jnp.asarray([f]))[0]) for f in (-1.0, 2.0, 4.0, 6.0, 8.0, 1e9)]
-    assert told == [0.0, 0.0, 0.5, 1.0, 1.5, 1.5]
+    result = [float(unit(jnp.asarray([f]))[0]) for f in (-1.0, 2.0, 4.0, 6.0, 8.0, 1e9)]
+    assert result == [0.0, 0.0, 0.5, 1.0, 1.5, 1.5]
 
 
 def test_features_are_the_papers() -> None:
@@ -129,5 +129,5 @@ def test_features_are_the_papers() -> None:
 
 def test_log_odds_are_a_weighted_sum() -> None:
     unit = UnitRange(jnp.asarray([0.0, 1.0]), jnp.asarray([2.0, 1.0]), jnp.asarray(5.0), log=True)
-    told = Logistic(unit, jnp.asarray([10.0, 100.0]), jnp.asarray(-7.0))(jnp.exp(jnp.asarray([1.0, 3.0])))
-    assert float(told) == pytest.approx(10 * 0.5 + 100 * 2.0 - 7)
+    result = Logistic(unit, jnp.asarray([10.0, 100.0]), jnp.asarray(-7.0))(jnp.exp(jnp.asarray([1.0, 3.0])))
+    assert float(result) == pytest.approx(10 * 0.5 + 100 * 2.0 - 7)

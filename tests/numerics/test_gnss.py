@@ -32,8 +32,8 @@ def one(**given: float) -> Ephemeris:
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.012, 0.3])
 def test_an_unperturbed_orbit_obeys_newton(eccentricity: float) -> None:
-    told = {"eccentricity": eccentricity, "anomaly": 2.1, "node": -1.3, "inclination": 0.96, "perigee": 0.7}
-    ephemeris = one(toe=1000.0, toe_of_week=500.0, **told)
+    result = {"eccentricity": eccentricity, "anomaly": 2.1, "node": -1.3, "inclination": 0.96, "perigee": 0.7}
+    ephemeris = one(toe=1000.0, toe_of_week=500.0, **result)
     times = 1000.0 + np.array([0.0, 3000.0, 7200.0])
     # the frame that does not turn coincides with the earth's at the first time
     start, speed = kepler.position(ephemeris, times[0]), kepler.velocity(ephemeris, times[0])
@@ -57,10 +57,10 @@ def test_a_geostationary_orbit_told_by_a_tilted_equator_stands_still() -> None:
     mu, rate, tilt = 3.986004418e14, 7.292115e-5, np.deg2rad(-5)
     radius = (mu / rate**2) ** (1 / 3)  # that of a sidereal day
     # the tilted equator rises by 5 degrees towards the true one's y, so that an orbit on the true one falls by as much
-    told = {"mu": mu, "earth_rate": rate, "sqrt_a": radius**0.5, "tilt": tilt, "inclination": tilt, "anomaly": 1.9}
+    result = {"mu": mu, "earth_rate": rate, "sqrt_a": radius**0.5, "tilt": tilt, "inclination": tilt, "anomaly": 1.9}
     times = np.array([0.0, 3600.0, 43200.0])
     place = radius * np.array([np.cos(1.9), np.sin(1.9), 0.0])
-    np.testing.assert_allclose(kepler.position(one(**told), times), np.tile(place, (3, 1)), atol=1e-3)
+    np.testing.assert_allclose(kepler.position(one(**result), times), np.tile(place, (3, 1)), atol=1e-3)
 
 
 def test_keplers_equation_is_solved() -> None:
@@ -140,12 +140,12 @@ def test_elevation_and_azimuth() -> None:
 
 def test_klobuchar_gives_the_published_example() -> None:
     # M. Mahooti, "Klobuchar ionospheric delay model" (GPS Toolbox): 23.784 m
-    told = np.array([0.382e-7, 0.149e-7, -0.179e-6, 0.0, 0.143e6, 0.0, -0.328e6, 0.113e6])
+    result = np.array([0.382e-7, 0.149e-7, -0.179e-6, 0.0, 0.143e6, 0.0, -0.328e6, 0.113e6])
     lat, lon, el, az = np.deg2rad([40.0, -100.0, 20.0, 210.0])
-    assert atmosphere.klobuchar(told, lat, lon, el, az, 593100.0) == pytest.approx(23.784, abs=1e-3)
-    night = atmosphere.klobuchar(told, lat, lon, np.pi / 2, az, 9 * 3600.0)
+    assert atmosphere.klobuchar(result, lat, lon, el, az, 593100.0) == pytest.approx(23.784, abs=1e-3)
+    night = atmosphere.klobuchar(result, lat, lon, np.pi / 2, az, 9 * 3600.0)
     assert night == pytest.approx(C * 5e-9, rel=1e-3)
-    other = atmosphere.klobuchar(told, lat, lon, el, az, 593100.0, frequency=1176.45e6)
+    other = atmosphere.klobuchar(result, lat, lon, el, az, 593100.0, frequency=1176.45e6)
     assert other == pytest.approx(23.784 * (1575.42 / 1176.45) ** 2, rel=1e-4)
 
 
@@ -185,14 +185,14 @@ def test_a_constellation_as_that_of_gps() -> None:
 def test_the_same_under_jit_vmap_and_grad() -> None:
     receiver, axes = geodesy.geodetic_to_ecef(*MUNICH, 500.0), geodesy.enu_axes(*MUNICH)
     sky = walker()
-    told = jax.tree.map(jnp.asarray, sky)
+    result = jax.tree.map(jnp.asarray, sky)
 
     def all_of_it(r: jax.Array, time: jax.Array) -> tuple[jax.Array, ...]:
-        place = kepler.position(told, time)
+        place = kepler.position(result, time)
         el, az = sight.elevation_azimuth(r, place, jnp.asarray(axes))
         air = atmosphere.saastamoinen(MUNICH[0], 500.0, el)
         ion = atmosphere.klobuchar(jnp.full(8, 1e-8), *MUNICH, el, az, time)
-        return place, kepler.clock(told, time), sight.distance(r, place), el, air, ion, sight.pseudorange_sigma(el)
+        return place, kepler.clock(result, time), sight.distance(r, place), el, air, ion, sight.pseudorange_sigma(el)
 
     place = kepler.position(sky, np.float64(300.0))
     el, az = sight.elevation_azimuth(receiver, place, axes)

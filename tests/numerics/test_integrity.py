@@ -61,30 +61,30 @@ def test_no_unnoticed_fault_takes_the_position_beyond_its_level_more_often_than_
     risk = 0.01
     gain, s, after, prior, h = filtered(3)
     mdb = detectable(s, np.ones(C, bool), noncentrality(ALPHA, risk))
-    told = protection(gain[:2], after[:2, :2], mdb, risk)
+    result = protection(gain[:2], after[:2, :2], mdb, risk)
     rng = np.random.default_rng(4)
     truth = rng.multivariate_normal(np.zeros(3), prior, DRAWS)
     noise = rng.standard_normal((DRAWS, C)) * np.sqrt(np.diag(s - h @ prior @ h.T))
     inverse = np.linalg.inv(s)
     z = truth @ h.T + noise
     off = np.hypot(*(z @ gain.T - truth)[:, :2].T)
-    assert np.mean(off > told.fault_free) <= risk
+    assert np.mean(off > result.fault_free) <= risk
     for c in range(C):
         for times in (0.8, 1.0):
             biased = z + times * mdb[c] * (np.arange(C) == c)
             w = np.abs(biased @ inverse) / np.sqrt(np.diag(inverse))
             unnoticed = w.max(axis=1) <= stats.norm.isf(ALPHA / 2)
             off = np.hypot(*(biased @ gain.T - truth)[:, :2].T)
-            assert np.mean(unnoticed & (off > told.faulty)) <= risk
-    assert told.worst == np.argmax(np.hypot(*gain[:2]) * mdb)
-    assert told.faulty > told.fault_free
+            assert np.mean(unnoticed & (off > result.faulty)) <= risk
+    assert result.worst == np.argmax(np.hypot(*gain[:2]) * mdb)
+    assert result.faulty > result.fault_free
 
 
 def test_what_is_not_taken_in_misleads_nobody() -> None:
     gain, s, after, *_ = filtered(5)
     known = np.arange(C) != 2
-    told = protection(gain[:2] * known, after[:2, :2], detectable(s, known, 5.0), 1e-7)
-    assert np.isfinite(told.faulty)
-    assert told.worst != 2
+    result = protection(gain[:2] * known, after[:2, :2], detectable(s, known, 5.0), 1e-7)
+    assert np.isfinite(result.faulty)
+    assert result.worst != 2
     sigma = np.sqrt(np.linalg.eigvalsh(after[:2, :2])[-1])
-    assert told.fault_free == pytest.approx(stats.rayleigh.isf(1e-7) * sigma)
+    assert result.fault_free == pytest.approx(stats.rayleigh.isf(1e-7) * sigma)

@@ -19,8 +19,8 @@ def test_blocks_together_are_all_values() -> None:
     whole = np.concatenate(values)
     np.testing.assert_array_equal(n, len(whole))
     np.testing.assert_allclose(mean, whole.mean(axis=0), rtol=1e-12)
-    for power, told in zip((2, 3, 4), sums, strict=True):
-        np.testing.assert_allclose(told, ((whole - whole.mean(axis=0)) ** power).sum(axis=0), rtol=1e-10)
+    for power, result in zip((2, 3, 4), sums, strict=True):
+        np.testing.assert_allclose(result, ((whole - whole.mean(axis=0)) ** power).sum(axis=0), rtol=1e-10)
 
 
 def test_nothing_cancels_beside_a_large_mean() -> None:

@@ -22,14 +22,14 @@ def told_by_lstm(net: Lstm, window: np.ndarray) -> np.ndarray:
         w, u, b = (np.asarray(x) for x in (layer.inputs, layer.recurrent, layer.bias))
         cells = u.shape[1]
         h, c = np.zeros(cells), np.zeros(cells)
-        told = []
+        result = []
         for x in rows:
             a = w @ x + u @ h + b
             i, f, g, o = (a[k * cells : (k + 1) * cells] for k in range(4))
             c = expit(f) * c + expit(i) * np.tanh(g)
             h = expit(o) * np.tanh(c)
-            told.append(h)
-        rows = told
+            result.append(h)
+        rows = result
     return np.asarray(net.output.weights) @ rows[-1] + np.asarray(net.output.bias)
 
 

@@ -115,7 +115,7 @@ class Navigator:
         phi = np.eye(17) + f
         return Navigator(end, phi @ self.cov @ phi.T + np.diag(density * long))
 
-    def told(self, z: np.ndarray, h: np.ndarray, r: np.ndarray) -> "Navigator":
+    def result(self, z: np.ndarray, h: np.ndarray, r: np.ndarray) -> "Navigator":
         """All measurements at once."""
         s = h @ self.cov @ h.T + np.diag(r)
         gain = np.linalg.solve(s, h @ self.cov).T

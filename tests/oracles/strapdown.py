@@ -33,13 +33,13 @@ def navigate(
     steps, halves = (Rotation.from_rotvec(share * rate * dt).as_matrix() for share in (1.0, 0.5))
     now, middle = (Rotation.from_rotvec(spin * (rows + late)[:, None] * dt).as_matrix() for late in (0.0, 0.5))
     r, v, turned = place.copy(), velocity + np.cross(spin, place), attitude
-    told = []
+    result = []
     for k in range(len(rate)):
         there = now[k].T @ r
         pull = somigliana(there) - OMEGA**2 * there * [1, 1, 0]
         v_new = v + (turned @ halves[k] @ force[k] + middle[k] @ pull) * dt
         r, v, turned = r + (v + v_new) / 2 * dt, v_new, turned @ steps[k]
         back = now[k + 1].T
-        told.append((back @ r, back @ (v - np.cross(spin, r)), back @ turned))
-    places, velocities, attitudes = (np.array(one) for one in zip(*told, strict=True))
+        result.append((back @ r, back @ (v - np.cross(spin, r)), back @ turned))
+    places, velocities, attitudes = (np.array(one) for one in zip(*result, strict=True))
     return places, velocities, attitudes

@@ -46,7 +46,7 @@ def agreement() -> Agreement:
     )
 
 
-def told(doubted: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def result(doubted: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """By the package: gaps, which are known, and what is expected. Within `doubted` all is kept out."""
     time, value, fresh = log()
     rows = samples(time, np.where(fresh, value, 0.0), fresh)
@@ -154,7 +154,7 @@ def by_hand(doubted: slice) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("doubted", [slice(0, 0), slice(300, 312), slice(300, 390)])
 def test_gaps(doubted: slice) -> None:
-    gap, known, _ = told(doubted)
+    gap, known, _ = result(doubted)
     gaps, fixes = by_hand(doubted)
     found = np.where(known, gap, np.nan)
     assert np.isfinite(gaps).mean() > 0.2
@@ -163,7 +163,7 @@ def test_gaps(doubted: slice) -> None:
 
 def test_a_height_is_expected_where_the_other_one_says() -> None:
     time, value, fresh = log()
-    *_, expected = told(slice(0, 0))
+    *_, expected = result(slice(0, 0))
     rows = np.flatnonzero(fresh[:, HEIGHT] & fresh[:, BARO] & (time > 70) & (time < 120))
     np.testing.assert_allclose(expected[rows, HEIGHT], value[rows, BARO] + 50, atol=0.2)
     np.testing.assert_allclose(expected[rows, BARO], value[rows, HEIGHT] - 50, atol=0.2)

@@ -56,15 +56,15 @@ def test_filter_and_verdicts() -> None:
     value[240:245, 5] = np.nan
     lying = replace(log, value=value, fresh=np.isfinite(value))
     monitor = arm_kalman("arm-kalman", log).monitor
-    told = walk(monitor, samples(lying.time, lying.value, lying.fresh))
+    result = walk(monitor, samples(lying.time, lying.value, lying.fresh))
     q, r = np.asarray(monitor.residual.q), np.asarray(monitor.residual.r)
     limit = float(monitor.branches[0].threshold.limit[0])
     want = zip(*textbook(PERIOD_S * np.arange(300), value, q, r, limit), strict=True)
     mean, cov, verdict = (np.stack(x) for x in want)
-    np.testing.assert_array_equal(told.channel[1:, :4], verdict)
+    np.testing.assert_array_equal(result.channel[1:, :4], verdict)
     assert (verdict[79:119, 1] == FAULT).all()
     assert (verdict[95:109, 3] == FAULT).all()
     assert (verdict == FAULT)[:, [0, 2]].mean() < 0.01
-    np.testing.assert_allclose(told.states.residual.mean[1:], mean, rtol=1e-6, atol=1e-8)
-    np.testing.assert_allclose(told.states.residual.cov[1:], cov, rtol=1e-4, atol=1e-11)
-    assert (told.channel[0] == UNKNOWN).all()
+    np.testing.assert_allclose(result.states.residual.mean[1:], mean, rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(result.states.residual.cov[1:], cov, rtol=1e-4, atol=1e-11)
+    assert (result.channel[0] == UNKNOWN).all()

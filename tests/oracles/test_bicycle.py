@@ -38,7 +38,7 @@ def filter_of(polar: bool, steered: bool = False, **changed) -> BicycleKalman:
         "smooth_s": jnp.asarray(0.2),
         "late_s": jnp.asarray(LATE),
         "speed_scale": jnp.asarray(1.02),
-        "bias": jnp.asarray([0.002, 0.1]),
+        "offset": jnp.asarray([0.002, 0.1]),
         "bias_spread": jnp.asarray([0.005, 0.3]),
         "channels": first + (4 if steered else 6),
     }
@@ -80,8 +80,8 @@ def _run():
 def run(filter: BicycleKalman, time, value, fresh, start=None):
     """The belief after every sample, and the residuals."""
     with jax.numpy_dtype_promotion("standard"):
-        told = _run()(filter, start if start is not None else filter.init(), samples(time, value, fresh))
-    return jax.tree.map(np.asarray, told)
+        result = _run()(filter, start if start is not None else filter.init(), samples(time, value, fresh))
+    return jax.tree.map(np.asarray, result)
 
 
 def textbook(filter: BicycleKalman, belief, time, value, fresh, polar: bool, steered: bool) -> Iterator[tuple]:
@@ -149,9 +149,9 @@ def test_against_the_textbook(polar: bool, steered: bool) -> None:
     assert start < 50
     begun = jax.tree.map(lambda x: x[start], beliefs)
     after = slice(start + 1, None)
-    told = textbook(filter, begun, time[after], value[after], fresh[after], polar, steered)
+    result = textbook(filter, begun, time[after], value[after], fresh[after], polar, steered)
     compared = 0
-    for row, (e, s, mean, cov, turned) in enumerate(told, start + 1):
+    for row, (e, s, mean, cov, turned) in enumerate(result, start + 1):
         # the textbook's metres count from one home, the filter's from the last fix: a part in 10^5 apart
         np.testing.assert_allclose(beliefs.mean[row][2:], mean[2:], rtol=1e-4, atol=1e-4)
         np.testing.assert_allclose(beliefs.cov[row], cov, rtol=1e-3, atol=1e-6)

@@ -54,23 +54,25 @@ def test_residual_score_and_blame_are_those_of_the_joint_gaussian() -> None:
     train, unseen = drive(3000), drive(60, seed=9)
     fitted = fit_conditioning(time(3000), train, np.ones(3000, bool), EACH, LAGS, bound=np.inf)
     rows = log(unseen)._replace(time=time(60))
-    told = walk(monitor(fitted, Mahalanobis(), Mahalanobis(single=True)), rows).reports
+    result = walk(monitor(fitted, Mahalanobis(), Mahalanobis(single=True)), rows).reports
     past = [unseen[t - LAGS : t].ravel() for t in range(LAGS, 60)]
     errors, cov = conditional(train, np.array(past), unseen[LAGS:])
     scale = np.sqrt(np.outer(np.diag(cov), np.diag(cov)))
     np.testing.assert_allclose(fitted.cov / scale, cov / scale, atol=1e-3)
     for t, e in enumerate(errors[5:], start=LAGS + 5):
-        np.testing.assert_allclose(told.residual.value[t] / np.sqrt(np.diag(cov)), e / np.sqrt(np.diag(cov)), atol=2e-3)
-        s, e = np.asarray(fitted.cov), told.residual.value[t]
+        np.testing.assert_allclose(
+            result.residual.value[t] / np.sqrt(np.diag(cov)), e / np.sqrt(np.diag(cov)), atol=2e-3
+        )
+        s, e = np.asarray(fitted.cov), result.residual.value[t]
         distance = e @ np.linalg.solve(s, e)
         # Freeing channel k: what is left of the distance is that of the others alone.
         left = [
             np.delete(e, k) @ np.linalg.solve(np.delete(np.delete(s, k, 0), k, 1), np.delete(e, k)) for k in range(4)
         ]
-        np.testing.assert_allclose(told.scores[0].value[t, 0], np.sqrt(distance), rtol=1e-9)
-        np.testing.assert_allclose(told.scores[0].blame[t, 0], 1 - np.array(left) / distance, atol=1e-9)
-        np.testing.assert_allclose(told.scores[1].value[t, 0], np.sqrt(distance - min(left)), rtol=1e-6)
-        np.testing.assert_array_equal(told.scores[1].blame[t, 0], told.scores[0].blame[t, 0])
+        np.testing.assert_allclose(result.scores[0].value[t, 0], np.sqrt(distance), rtol=1e-9)
+        np.testing.assert_allclose(result.scores[0].blame[t, 0], 1 - np.array(left) / distance, atol=1e-9)
+        np.testing.assert_allclose(result.scores[1].value[t, 0], np.sqrt(distance - min(left)), rtol=1e-6)
+        np.testing.assert_array_equal(result.scores[1].blame[t, 0], result.scores[0].blame[t, 0])
 
 
 def test_without_levels_it_is_least_squares_on_the_changes() -> None:
@@ -83,8 +85,8 @@ def test_without_levels_it_is_least_squares_on_the_changes() -> None:
     scale = np.sqrt(np.outer(np.diag(want), np.diag(want)))
     np.testing.assert_allclose(fitted.cov / scale, want / scale, atol=1e-2)
     rows = np.array([train[t : t - LAGS : -1].ravel() for t in range(LAGS, 3000)]) - np.tile(fitted.center, LAGS)
-    told = rows[:-1] @ np.asarray(fitted.weights).T + np.asarray(fitted.center)
-    np.testing.assert_allclose((told - (train[LAGS:-1] + past @ b)) / np.sqrt(np.diag(want)), 0, atol=5e-2)
+    result = rows[:-1] @ np.asarray(fitted.weights).T + np.asarray(fitted.center)
+    np.testing.assert_allclose((result - (train[LAGS:-1] + past @ b)) / np.sqrt(np.diag(want)), 0, atol=5e-2)
 
 
 def test_without_levels_an_offset_moves_nobody_else() -> None:
@@ -124,8 +126,8 @@ def test_channels_that_follow_from_each_other() -> None:
     fitted = fit_conditioning(time(2000), x, np.ones(2000, bool), EACH, LAGS)
     assert np.linalg.eigvalsh(fitted.cov / np.sqrt(np.outer(np.diag(fitted.cov), np.diag(fitted.cov)))).min() > 0
     x[500, 3] += x[:, 3].std()
-    told = walk(monitor(fitted, Mahalanobis()), log(x[:600])._replace(time=time(600))).reports
-    assert told.scores[0].value[500, 0] > 10 * told.scores[0].value[100:500].max()
+    result = walk(monitor(fitted, Mahalanobis()), log(x[:600])._replace(time=time(600))).reports
+    assert result.scores[0].value[500, 0] > 10 * result.scores[0].value[100:500].max()
 
 
 def test_a_spike_too_small_to_be_named_stays_out_of_the_window() -> None:
@@ -134,8 +136,8 @@ def test_a_spike_too_small_to_be_named_stays_out_of_the_window() -> None:
     sigma = np.sqrt(np.diag(clean.cov))
     spiked = unseen.copy()
     spiked[100] += 20 * sigma
-    told = walk(monitor(clean, Mahalanobis()), log(spiked)._replace(time=time(200)))
-    assert np.abs((told.states.residual.rows[100, 0] - unseen[100]) / sigma).max() < 3 + 4
+    result = walk(monitor(clean, Mahalanobis()), log(spiked)._replace(time=time(200)))
+    assert np.abs((result.states.residual.rows[100, 0] - unseen[100]) / sigma).max() < 3 + 4
     open_ended = fit_conditioning(time(3000), train, np.ones(3000, bool), EACH, LAGS, bound=np.inf)
     taken = walk(monitor(open_ended, Mahalanobis()), log(spiked)._replace(time=time(200)))
     np.testing.assert_allclose(taken.states.residual.rows[100, 0], spiked[100])
@@ -153,8 +155,8 @@ def test_after_a_gap_one_value_fills_the_window_and_its_word_counts_for_less() -
     train, unseen = drive(3000), drive(100, seed=6)
     fitted = fit_conditioning(time(3000), train, np.ones(3000, bool), EACH, LAGS)
     late = time(100) + np.where(np.arange(100) < 50, 0, 30.0)
-    told = walk(monitor(fitted, Mahalanobis()), log(unseen)._replace(time=late))
-    np.testing.assert_array_equal(told.states.residual.rows[50], np.tile(unseen[50], (LAGS, 1)))
-    noise = np.asarray(told.reports.residual.noise)
+    result = walk(monitor(fitted, Mahalanobis()), log(unseen)._replace(time=late))
+    np.testing.assert_array_equal(result.states.residual.rows[50], np.tile(unseen[50], (LAGS, 1)))
+    noise = np.asarray(result.reports.residual.noise)
     assert (noise[50] > noise[49]).all()
     np.testing.assert_allclose(noise[51], np.diag(fitted.cov), rtol=1e-9)

@@ -53,7 +53,7 @@ def loop(time: np.ndarray, value: np.ndarray, memory_s: float) -> dict[int, floa
     start, fixes, others = time[0], [], []
     before = None
     offset: list[float] = []
-    level, learned, told = np.nan, -np.inf, {}
+    level, learned, result = np.nan, -np.inf, {}
     for k, t in enumerate(time):
         if t - start > GAP_S:
             start, fixes, others = t, [], []
@@ -70,7 +70,7 @@ def loop(time: np.ndarray, value: np.ndarray, memory_s: float) -> dict[int, floa
                 own = np.mean(fixes, axis=0)
                 d = own[1] - (now[1] + speed * (own[0] - now[0] + LAG_S))
                 if len(offset) == WARM:
-                    told[k] = d - level
+                    result[k] = d - level
                     level += (1 - np.exp(-min(t - learned, GAP_S) / memory_s)) * (d - level)
                 else:
                     offset.append(d)
@@ -78,28 +78,28 @@ def loop(time: np.ndarray, value: np.ndarray, memory_s: float) -> dict[int, floa
                 learned = t
             before = now
         start, fixes, others = t, [], []
-    return told
+    return result
 
 
 @pytest.mark.parametrize("memory_s", [np.inf, 20.0])
 @pytest.mark.parametrize("gap", [False, True])
 def test_every_beat_is_as_a_loop_says(memory_s: float, gap: bool) -> None:
     time, value = heights(1, gap=gap)
-    told, expected = through(part(memory_s), time, value).reports.residual, loop(time, value, memory_s)
-    rows = np.flatnonzero(told.valid[:, HEIGHT])
+    result, expected = through(part(memory_s), time, value).reports.residual, loop(time, value, memory_s)
+    rows = np.flatnonzero(result.valid[:, HEIGHT])
     assert rows.tolist() == list(expected)
     assert len(rows) > 30
-    np.testing.assert_allclose(told.value[rows, HEIGHT], list(expected.values()), atol=1e-9)
-    assert not told.valid[:, [0, 1]].any()
+    np.testing.assert_allclose(result.value[rows, HEIGHT], list(expected.values()), atol=1e-9)
+    assert not result.valid[:, [0, 1]].any()
 
 
 def test_what_stands_in_is_the_reference() -> None:
     """... with the offset, and the lag made up for, at every tick."""
     time, value = heights(2)
-    told = through(part(), time, value).reports.residual
+    result = through(part(), time, value).reports.residual
     late = time > 20
     truth = np.interp(time, time[np.isfinite(value[:, HEIGHT])], value[np.isfinite(value[:, HEIGHT]), HEIGHT])
-    assert np.std((told.expected[:, HEIGHT] - truth)[late]) < 1.0
+    assert np.std((result.expected[:, HEIGHT] - truth)[late]) < 1.0
 
 
 def test_a_distrusted_height_moves_no_offset() -> None:

@@ -83,16 +83,16 @@ def runs(log: Log, c: int) -> Iterator[tuple[int, np.ndarray]]:
 def test_each_window_is_as_a_loop_says(name: str, gap_s: float) -> None:
     measure, oracle = MEASURES[name]
     log = Log(3, gap_s=gap_s)
-    told = scores(windowed(measure), log)
+    result = scores(windowed(measure), log)
     for c in range(2):
         judged = list(runs(log, c))
         assert len(judged) > 40
         for k, mine in judged:
-            np.testing.assert_allclose(told[k, c], oracle(log.time[mine], log.value[mine, c], SIGMA[c]), rtol=1e-9)
-        assert np.isnan(told[~log.valid[:, c], c]).all()
+            np.testing.assert_allclose(result[k, c], oracle(log.time[mine], log.value[mine, c], SIGMA[c]), rtol=1e-9)
+        assert np.isnan(result[~log.valid[:, c], c]).all()
     if gap_s:
         gap = len(log.time) // 3 + 1
-        assert np.isnan(told[gap : gap + 25]).all()
+        assert np.isnan(result[gap : gap + 25]).all()
 
 
 @pytest.mark.parametrize("name", MEASURES)
@@ -103,12 +103,12 @@ def test_a_fast_channel_shares_slots(name: str) -> None:
     log.time = np.arange(2000) / 20.0
     ramp = 0.1 * np.maximum(log.time - 60.0, 0.0)[:, None] * SIGMA
     log.value = np.random.default_rng(4).standard_normal((2000, 2)) * SIGMA + ramp
-    told = scores(windowed(measure, 40), log)
+    result = scores(windowed(measure, 40), log)
     for k in (1000, 1500, 1999):
         t = log.time[: k + 1]
         mine = np.flatnonzero(t >= t[-1] - WINDOW_S)
         expected = oracle(log.time[mine], log.value[mine, 0], SIGMA[0])
-        np.testing.assert_allclose(told[k, 0], expected, rtol=0.1, atol=0.02 if name == "slope" else 0.5)
+        np.testing.assert_allclose(result[k, 0], expected, rtol=0.1, atol=0.02 if name == "slope" else 0.5)
 
 
 def test_hours_and_unix_time_cost_no_digits() -> None:
@@ -122,27 +122,27 @@ def test_hours_and_unix_time_cost_no_digits() -> None:
 def test_white_noise_is_standard_normal() -> None:
     log = Log(6, rows=3000, holes=0.0)
     log.value = np.random.default_rng(6).standard_normal((3000, 2)) * SIGMA
-    told = scores(windowed(AveragedInnovation()), log)[100::40]
-    assert stats.kstest(told[np.isfinite(told)], "halfnorm").pvalue > 0.01
+    result = scores(windowed(AveragedInnovation()), log)[100::40]
+    assert stats.kstest(result[np.isfinite(result)], "halfnorm").pvalue > 0.01
     square = scores(windowed(WindowedChiSquare()), log)[100::40]
     assert np.mean(square > 1.645) == pytest.approx(0.05, abs=0.04)
 
 
 def cusum_loop(log: Log, c: int, k: float, ceiling: float) -> np.ndarray:
     up = down = 0.0
-    last, told = -np.inf, np.full(len(log.time), np.nan)
+    last, result = -np.inf, np.full(len(log.time), np.nan)
     for row in log.seen(c, len(log.time) - 1):
         if log.time[row] - last > GAP_S:
             up = down = 0.0
         e = log.value[row, c] / SIGMA[c]
         up, down = min(max(up + e - k, 0.0), ceiling), min(max(down - e - k, 0.0), ceiling)
-        told[row], last = max(up, down), log.time[row]
-    return told
+        result[row], last = max(up, down), log.time[row]
+    return result
 
 
 def ewma_loop(log: Log, c: int, memory_s: float) -> np.ndarray:
     """Weights of all values since it began, one by one."""
-    told = np.full(len(log.time), np.nan)
+    result = np.full(len(log.time), np.nan)
     rows, begun, last = [], -np.inf, -np.inf
     for row in log.seen(c, len(log.time) - 1):
         if log.time[row] - last > GAP_S:
@@ -151,10 +151,10 @@ def ewma_loop(log: Log, c: int, memory_s: float) -> np.ndarray:
         t = log.time[rows]
         gain = np.append(1.0, 1 - np.exp(-np.diff(t) / memory_s))
         weight = np.array([gain[i] * np.prod(1 - gain[i + 1 :]) for i in range(len(rows))])
-        told[row] = abs(weight @ (log.value[rows, c] / SIGMA[c])) / np.sqrt((weight**2).sum())
+        result[row] = abs(weight @ (log.value[rows, c] / SIGMA[c])) / np.sqrt((weight**2).sum())
         last = log.time[row]
     assert begun >= 0
-    return told
+    return result
 
 
 @pytest.mark.parametrize("gap_s", [0.0, 20.0])
@@ -168,7 +168,7 @@ def ewma_loop(log: Log, c: int, memory_s: float) -> np.ndarray:
 )
 def test_sums_and_averages_are_as_a_loop_says(part, loop: Callable[[Log, int], np.ndarray], gap_s: float) -> None:
     log = Log(7, gap_s=gap_s)
-    told = scores(part, log)
+    result = scores(part, log)
     for c in range(2):
-        np.testing.assert_allclose(told[:, c], loop(log, c), rtol=1e-9)
-    assert np.nanmax(told) > 10
+        np.testing.assert_allclose(result[:, c], loop(log, c), rtol=1e-9)
+    assert np.nanmax(result) > 10

@@ -55,8 +55,8 @@ def monitor(part: eqx.Module, limit: float) -> Monitor:
 @pytest.mark.parametrize(("name", "limit"), [("fuzzy", 4.0), ("logistic", 0.0)])
 def test_each_channel_is_judged_by_its_own_model(name: str, limit: float) -> None:
     part = statistic(name)
-    told = walk(monitor(part, limit), rows())
-    score, fresh, r = told.reports.scores[0], np.asarray(rows().fresh), np.asarray(rows().value) - 5.0
+    result = walk(monitor(part, limit), rows())
+    score, fresh, r = result.reports.scores[0], np.asarray(rows().fresh), np.asarray(rows().value) - 5.0
     np.testing.assert_array_equal(score.valid, fresh & [True, False, True])
     assert np.isfinite(score.value).all()
     for model, column in zip(part.models, COLUMNS, strict=True):
@@ -64,7 +64,7 @@ def test_each_channel_is_judged_by_its_own_model(name: str, limit: float) -> Non
         e = r[there, column]
         want = jax.tree.map(np.asarray, model)(np.column_stack([np.abs(e), e**2, np.ones(len(e))]))
         np.testing.assert_allclose(score.value[there, column], want, rtol=1e-9, atol=1e-12)
-        np.testing.assert_array_equal(told.channel[there, column], np.where(want > limit, FAULT, OK))
+        np.testing.assert_array_equal(result.channel[there, column], np.where(want > limit, FAULT, OK))
         assert 0 < (want > limit).sum() < len(e)
 
 

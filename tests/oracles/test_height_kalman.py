@@ -42,11 +42,11 @@ def flown(inertial: bool, seed: int = 3) -> tuple[np.ndarray, np.ndarray]:
 
 def textbook(time, value, inertial: bool):
     """Innovation of the height and its variance at each row, NaN where there was nothing to test."""
-    x, p, push, felt, taken, before, heard = None, None, 0.0, False, 0, 0.0, 0.0
+    x, p, push, felt, taken, before, received = None, None, 0.0, False, 0, 0.0, 0.0
     for t, row in zip(time, value, strict=True):
-        told = np.nan, np.nan
+        result = np.nan, np.nan
         z = row[:3]
-        if x is not None and t - heard > 2.0:
+        if x is not None and t - received > 2.0:
             x, taken = None, 0
         if x is not None:
             dt = t - before
@@ -62,7 +62,7 @@ def textbook(time, value, inertial: bool):
             h = ROWS[there]
             s = h @ p @ h.T + np.diag(R[there])
             if there[0] and taken >= 5:
-                told = z[0] - x[0], p[0, 0] + R[0]
+                result = z[0] - x[0], p[0, 0] + R[0]
             k = p @ h.T @ np.linalg.inv(s)
             x, p = x + k @ (z[there] - h @ x), p - k @ h @ p
             taken += there[0]
@@ -70,7 +70,7 @@ def textbook(time, value, inertial: bool):
             x, taken = np.array([z[0], 0, 0, 0]), 1
             p = np.diag([R[0], 25.0, 90000.0, 0.09 if inertial else 0.0])
         if np.isfinite(z[0]):
-            heard = t
+            received = t
         felt = inertial and bool(np.isfinite(row[3:]).all())
         push = 0.0
         if felt:
@@ -78,7 +78,7 @@ def textbook(time, value, inertial: bool):
             body = np.array([np.sin(pitch), -np.sin(roll) * np.cos(pitch), -np.cos(roll) * np.cos(pitch)])
             push = float(body @ [fx, fy, fz]) - G
         before = t
-        yield told
+        yield result
 
 
 @pytest.mark.parametrize(("inertial", "below"), [(False, 1.0), (True, 1.0), (True, -1.0)])
@@ -99,11 +99,11 @@ def test_innovation_and_its_variance(inertial: bool, below: float) -> None:
     monitor = Monitor(
         filter, (Branch(Absolute(), Fixed(jnp.full(8, jnp.inf))),), Exceed(), Drop(), jnp.zeros(8), tuple(range(8))
     )
-    told = walk(monitor, samples(time, value, np.isfinite(value)))
+    result = walk(monitor, samples(time, value, np.isfinite(value)))
     tested = np.isfinite(want[:, 0])
     assert tested[20:120].mean() > 0.8
-    residual = told.reports.residual
-    np.testing.assert_array_equal(told.channel[:, 0] == OK, tested)
+    residual = result.reports.residual
+    np.testing.assert_array_equal(result.channel[:, 0] == OK, tested)
     np.testing.assert_allclose(residual.value[tested, 0], want[tested, 0], rtol=1e-6, atol=1e-7)
     np.testing.assert_allclose(residual.cov[tested, 0, 0], want[tested, 1], rtol=1e-7)
     late = tested & (np.arange(200) > 60)

@@ -32,12 +32,12 @@ BLOCKS = {"psi": 0, "vel": 3, "pos": 6, "gyro": 9, "acc": 12, "clock": 15}
 class Run(NamedTuple):
     residual: InsGnss
     epochs: Log
-    told: Walk
+    result: Walk
     begins: int  # the first epoch after which it navigates
 
     @property
     def belief(self) -> Belief:
-        belief: Belief = self.told.states.residual
+        belief: Belief = self.result.states.residual
         return belief
 
     @property
@@ -60,8 +60,8 @@ def run(rates: bool = False, bank: bool = False) -> Run:
         at = np.searchsorted(made.log.time, epochs.time - 1e-6)
         epochs = replace(epochs, block=epochs.block._replace(ahead=np.linalg.norm(made.velocity[at], axis=1)))
     residual = navigation(how, Filter(bank=bank))
-    told = walk(monitor(how, residual), samples(epochs.time, epochs.value, epochs.fresh, epochs.block))
-    return Run(residual, epochs, told, int(np.flatnonzero(told.states.residual.phase == ALIGNED)[0]))
+    result = walk(monitor(how, residual), samples(epochs.time, epochs.value, epochs.fresh, epochs.block))
+    return Run(residual, epochs, result, int(np.flatnonzero(result.states.residual.phase == ALIGNED)[0]))
 
 
 def at(belief: Belief, k: int, apart: int | None = None) -> Navigator:
@@ -84,28 +84,28 @@ def oracle(of: Run, start: Navigator, rates: bool = False, without: int | None =
         for rows in (np.arange(12) < STRETCH, np.arange(12) >= STRETCH):
             now = now.carried(b.gyro[rows & real], b.force[rows & real], 1 / HZ, DENSITY)
         there = epochs.fresh[k]
-        heard = np.isfinite(b.place).all(axis=1)
-        each = np.tile(heard, 1 + rates)
+        received = np.isfinite(b.place).all(axis=1)
+        each = np.tile(received, 1 + rates)
 
-        def model(x: State, _: object = None, b=b, heard=heard) -> np.ndarray:
-            return expected(x, b.place[heard], b.speed[heard], rates)
+        def model(x: State, _: object = None, b=b, received=received) -> np.ndarray:
+            return expected(x, b.place[received], b.speed[received], rates)
 
         h = np.zeros((len(there), 17))
         h[each] = derivative(model, now.state)
-        h[len(heard) :, 6:9] = 0.0  # how a line of sight turns with the position is left out: 2e-4 of a range's rate
+        h[len(received) :, 6:9] = 0.0  # how a line of sight turns with the position is left out: 2e-4 of a range's rate
         z = np.zeros(len(there))
         z[each] = epochs.value[k][each] - model(now.state)
         r = noise(now.state, b.place, rates)
         innovations.append(z)
         variances.append(np.einsum("ij,jk,ik->i", h, now.cov, h) + r)
-        taken = there & (np.arange(len(there)) % len(heard) != (-1 if without is None else without))
+        taken = there & (np.arange(len(there)) % len(received) != (-1 if without is None else without))
         z, h, r = z / unit, h / unit[:, None], r / unit**2
         z, h, r = z[taken], h[taken], r[taken]
         if np.isfinite(b.ahead):
             z = np.concatenate([z, np.array([b.ahead, 0.0, 0.0]) - ahead(now.state)])
             h = np.concatenate([h, derivative(lambda x, _: ahead(x), now.state)])
             r = np.concatenate([r, np.array([WHEEL_M_S, ASIDE_M_S, ASIDE_M_S]) ** 2])
-        now = now.told(z, h, r)
+        now = now.result(z, h, r)
         states.append(now.state)
     return states, innovations, variances
 
@@ -138,12 +138,12 @@ def test_it_goes_as_the_oracle_does() -> None:
     place, attitude = worst(own, states)
     assert place < 1e-4
     assert attitude < 1e-5
-    told = jax.tree.map(lambda x: x[own.rest], own.told.reports.residual)
-    there = told.valid
+    result = jax.tree.map(lambda x: x[own.rest], own.result.reports.residual)
+    there = result.valid
     assert there.sum() > 200
-    assert np.abs(told.value[there]).mean() > 1.0
-    np.testing.assert_allclose(told.value[there], np.stack(innovations)[there], atol=1e-4)
-    np.testing.assert_allclose(np.einsum("tii->ti", told.cov)[there], np.stack(variances)[there], rtol=3e-5)
+    assert np.abs(result.value[there]).mean() > 1.0
+    np.testing.assert_allclose(result.value[there], np.stack(innovations)[there], atol=1e-4)
+    np.testing.assert_allclose(np.einsum("tii->ti", result.cov)[there], np.stack(variances)[there], rtol=3e-5)
 
 
 def test_with_range_rates_and_wheels_it_does_so_too() -> None:
@@ -160,23 +160,23 @@ def test_a_member_of_the_bank_is_a_filter_that_never_got_its_satellite(member: i
     start = at(own.belief, own.begins, member)
     _, innovations, variances = oracle(own, start, rates=True, without=member)
     both = [member, member + len(own.residual.system)]
-    told = jax.tree.map(lambda x: x[own.rest], own.told.reports.residual)
-    assert told.valid[:, both].all()
+    result = jax.tree.map(lambda x: x[own.rest], own.result.reports.residual)
+    assert result.valid[:, both].all()
     spread = np.sqrt(np.stack(variances)[:, both])
-    np.testing.assert_allclose(told.value[:, both] / spread, np.stack(innovations)[:, both] / spread, atol=0.01)
-    np.testing.assert_allclose(np.einsum("tii->ti", told.cov)[:, both], spread**2, rtol=3e-3)
+    np.testing.assert_allclose(result.value[:, both] / spread, np.stack(innovations)[:, both] / spread, atol=0.01)
+    np.testing.assert_allclose(np.einsum("tii->ti", result.cov)[:, both], spread**2, rtol=3e-3)
     with pytest.raises(AssertionError):  # while the filter that got it says something else
         np.testing.assert_allclose(
-            told.value[:, both] / spread, np.stack(oracle(own, start, True)[1])[:, both] / spread, atol=0.01
+            result.value[:, both] / spread, np.stack(oracle(own, start, True)[1])[:, both] / spread, atol=0.01
         )
 
 
 def test_innovations_scatter_as_the_filter_claims() -> None:
     own = run()
-    told = own.told.reports.residual
-    there = told.valid & (own.belief.phase == ALIGNED)[:, None]
+    result = own.result.reports.residual
+    there = result.valid & (own.belief.phase == ALIGNED)[:, None]
     assert there.sum() > 400
-    assert 0.9 < (told.value / np.sqrt(np.einsum("tii->ti", told.cov)))[there].std() < 1.1
+    assert 0.9 < (result.value / np.sqrt(np.einsum("tii->ti", result.cov)))[there].std() < 1.1
 
 
 def test_every_block_of_the_transition() -> None:

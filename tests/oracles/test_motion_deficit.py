@@ -66,7 +66,7 @@ def test_the_deficit_is_way_minus_displacement() -> None:
         channels=len(rows.channels),
         slots=SLOTS,
     )
-    told = told_by(part, rows).extra
+    result = told_by(part, rows).extra
 
     at = np.flatnonzero(rows.fresh[:, 0])
     time, (latitude, longitude, speed, course) = rows.time[at], rows.value[at][:, :4].T
@@ -78,17 +78,17 @@ def test_the_deficit_is_way_minus_displacement() -> None:
     for i, now in enumerate(time):
         for h, horizon in enumerate(HORIZONS_S):
             old = [r for r in references if now - time[r] >= horizon - 1e-9]
-            assert told.ready[at[i], h] == bool(old)
+            assert result.ready[at[i], h] == bool(old)
             if old:
                 r = max(old)
                 gone = metres(latitude[[r, i]], longitude[[r, i]])[1, :2]
                 deficit = (way[i] - way[r]) - gone
                 swing = np.linalg.norm(velocity[i] - velocity[r])
                 terms = [1.0, swing**2, (path[i] - path[r]) ** 2, (now - time[r]) ** 2]
-                assert told.age[at[i], h] == pytest.approx(now - time[r], abs=1e-9)
-                np.testing.assert_allclose(told.deficit[at[i], h], deficit, atol=1e-4)
-                assert told.path[at[i], h] == pytest.approx(path[i] - path[r], abs=1e-6)
-                assert told.sigma[at[i], h] == pytest.approx(np.sqrt(np.dot([0.5, 0.1, 0.01, 0.2], terms)), rel=1e-6)
+                assert result.age[at[i], h] == pytest.approx(now - time[r], abs=1e-9)
+                np.testing.assert_allclose(result.deficit[at[i], h], deficit, atol=1e-4)
+                assert result.path[at[i], h] == pytest.approx(path[i] - path[r], abs=1e-6)
+                assert result.sigma[at[i], h] == pytest.approx(np.sqrt(np.dot([0.5, 0.1, 0.01, 0.2], terms)), rel=1e-6)
         if not references or now - time[references[-1]] >= SPACING_S - 1e-9:
             references = [*references, i][-SLOTS:]
 
@@ -108,12 +108,12 @@ def unit() -> Inertial:
 def test_the_slip_is_velocity_minus_what_the_unit_makes_of_it() -> None:
     rows, memory = log(), 4.0
     part = VelocityDeficit(jnp.asarray(memory), jnp.asarray(8.0), jnp.ones(2), unit(), (2, 3), True, len(rows.channels))
-    told = told_by(part, rows).extra
+    result = told_by(part, rows).extra
     by_unit, rates = np.zeros(2), np.zeros(2)
-    before = heard = slow = -1e12
+    before = received = slow = -1e12
     for k, now in enumerate(rows.time):
         dt = np.clip(now - before, 0.0, 1.0)
-        if k and now - heard > 1.0:
+        if k and now - received > 1.0:
             slow = now
         angle, speed = rates[0] * dt, np.linalg.norm(by_unit)
         turned = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]) @ by_unit
@@ -123,19 +123,19 @@ def test_the_slip_is_velocity_minus_what_the_unit_makes_of_it() -> None:
         rates = np.array([new[0] + (rates[0] - new[0]) * np.exp(-dt / 0.5), new[1]])
         before = now
         if not rows.fresh[k, 2]:
-            assert not told.ready[k]
+            assert not result.ready[k]
             continue
         velocity = rows.value[k, 2] * np.array([np.sin(rows.value[k, 3]), np.cos(rows.value[k, 3])])
         ahead = by_unit / max(np.linalg.norm(by_unit), 0.1)
         ready = now - slow >= memory / 4 and np.linalg.norm(by_unit) >= 3.0
-        assert told.ready[k] == ready
+        assert result.ready[k] == ready
         if ready:
             off = velocity - by_unit
             across = off[0] * ahead[1] - off[1] * ahead[0]
-            np.testing.assert_allclose(told.slip[k], [off @ ahead, across], atol=1e-9)
-        if rows.value[k, 2] < 3.0 or now - heard > 8.0:
+            np.testing.assert_allclose(result.slip[k], [off @ ahead, across], atol=1e-9)
+        if rows.value[k, 2] < 3.0 or now - received > 8.0:
             by_unit, slow = velocity, now
         else:
-            by_unit = by_unit + (1 - np.exp(-min(now - heard, 1.0) / memory)) * (velocity - by_unit)
-        heard = now
-    assert told.ready.sum() > 100
+            by_unit = by_unit + (1 - np.exp(-min(now - received, 1.0) / memory)) * (velocity - by_unit)
+        received = now
+    assert result.ready.sum() > 100

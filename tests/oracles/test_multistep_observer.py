@@ -125,17 +125,17 @@ def test_the_observer_and_its_verdicts() -> None:
     value[220:222, flown.DOWN] = np.nan
     value[260:263, flown.HEIGHT] += 5.0
     value[262, flown.DOWN] = np.nan  # doubted, and nothing to go on with
-    told = walk(monitor, samples(part.time, value, np.isfinite(value)))
+    result = walk(monitor, samples(part.time, value, np.isfinite(value)))
     limits = dict(zip(STEPS, np.asarray(monitor.branches[0].threshold.limit).tolist(), strict=True))
     recovery = monitor.recovery
     book = Textbook(limits, 3.0, float(recovery.readmit_s), float(monitor.residual.gap_s))
     rows = zip(part.time.tolist(), value[:, flown.HEIGHT].tolist(), value[:, flown.DOWN].tolist(), strict=True)
     verdict, expected, origin = (np.array(x) for x in zip(*(book.push(*row) for row in rows), strict=True))
-    np.testing.assert_array_equal(told.channel[:, flown.HEIGHT], verdict)
+    np.testing.assert_array_equal(result.channel[:, flown.HEIGHT], verdict)
     assert {*verdict[60:140].tolist()} == {OK, UNKNOWN, FAULT}
     there = np.isfinite(expected)
-    np.testing.assert_allclose(told.reports.residual.expected[there, flown.HEIGHT], expected[there], rtol=1e-10)
-    told_cov = told.reports.residual.cov[:, flown.HEIGHT, flown.HEIGHT]
+    np.testing.assert_allclose(result.reports.residual.expected[there, flown.HEIGHT], expected[there], rtol=1e-10)
+    told_cov = result.reports.residual.cov[:, flown.HEIGHT, flown.HEIGHT]
     tested = verdict != UNKNOWN
     ages, variance = np.asarray(monitor.residual.ages), np.asarray(monitor.residual.variance)
     age = (part.time - origin)[tested]
@@ -151,13 +151,13 @@ def test_a_height_that_was_not_trusted_starts_nothing() -> None:
     part = log.between(160.0)
     value = part.value.copy()
     value[100:140, flown.HEIGHT] += 0.2 * np.arange(40)
-    told = walk(monitor, samples(part.time, value, np.isfinite(value)))
-    first = 100 + int(np.argmax(told.channel[100:140, flown.HEIGHT] == FAULT))
+    result = walk(monitor, samples(part.time, value, np.isfinite(value)))
+    first = 100 + int(np.argmax(result.channel[100:140, flown.HEIGHT] == FAULT))
     assert first < 115
-    assert (told.channel[first:140, flown.HEIGHT] == FAULT).all()
-    stands_in = told.reports.trust.value[first:140, flown.HEIGHT]
+    assert (result.channel[first:140, flown.HEIGHT] == FAULT).all()
+    stands_in = result.reports.trust.value[first:140, flown.HEIGHT]
     assert np.abs(stands_in - part.value[first:140, flown.HEIGHT]).max() < 1.0
-    spread = told.reports.residual.cov[first:140, flown.HEIGHT, flown.HEIGHT]
+    spread = result.reports.residual.cov[first:140, flown.HEIGHT, flown.HEIGHT]
     assert (np.diff(spread) >= 0).all()
     assert spread[-1] > 1.1 * spread[0]
 
@@ -179,8 +179,8 @@ def test_no_past_goes_over_a_gap() -> None:
     monitor = kinematic_observer.build(log, 0, SILENT, kinematic_observer.Setting((1.0,))).monitor
     part = log.between(end_s=20.0)
     later = replace(part, time=part.time + np.where(np.arange(100) < 50, 0.0, 5.0))
-    told = walk(monitor, samples(later.time, later.value, later.fresh))
-    verdict = told.channel[:, flown.HEIGHT]
+    result = walk(monitor, samples(later.time, later.value, later.fresh))
+    verdict = result.channel[:, flown.HEIGHT]
     assert (verdict[:5] == UNKNOWN).all()
     assert (verdict[5:50] == OK).all()
     assert (verdict[50:55] == UNKNOWN).all()

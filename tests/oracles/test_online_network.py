@@ -91,7 +91,7 @@ class Plain:
         self.y = [CENTER[:2].copy() for _ in range(M)]  # the newest first
         self.u = [CENTER[2]] * N
         self.age = [0, 0]  # rows that each output has been in the window
-        self.heard = self.clean = self.quiet = 0
+        self.received = self.clean = self.quiet = 0
         self.time = self.last = -1e9
         self.trusted = [-1e9, -1e9]
 
@@ -102,8 +102,8 @@ class Plain:
     def push(self, time: float, y: np.ndarray, u: float) -> tuple[np.ndarray, np.ndarray, list[int]]:
         """Residual, what stands for each output, and the verdicts."""
         if time - self.time > 1.5 * TICK_S:
-            self.age, self.heard, self.clean = [0, 0], 0, 0
-        self.heard = 0 if np.isnan(u) else min(self.heard + 1, N + 1)
+            self.age, self.received, self.clean = [0, 0], 0, 0
+        self.received = 0 if np.isnan(u) else min(self.received + 1, N + 1)
         u = self.u[0] if np.isnan(u) else u
         x = [(self.y[0][i] - CENTER[i]) / HALF[i] for i in range(2)]
         x += [(self.y[j][i] - self.y[j + 1][i]) / STEP[i] for j in range(M - 1) for i in range(2)]
@@ -117,7 +117,7 @@ class Plain:
         verdicts, taken, measured = [], np.zeros(2), np.zeros(2, bool)
         judged = self.quiet >= WARM
         for i in range(2):
-            valid = there[i] and self.age[i] >= M and self.heard > N and judged
+            valid = there[i] and self.age[i] >= M and self.received > N and judged
             bad = valid and abs(residual[i]) > THETA[i]
             verdicts.append(FAULT if bad else OK if valid else UNKNOWN)
             measured[i] = there[i] and not bad
@@ -127,7 +127,7 @@ class Plain:
             self.age[i] = min(self.age[i] + 1, M) if measured[i] or filled else 0
             self.trusted[i] = time if measured[i] else self.trusted[i]
 
-        whole = self.clean >= M and self.heard > N
+        whole = self.clean >= M and self.received > N
         learns = [
             whole and measured[i] and (not judged or (verdicts[i] == OK and FAULT not in verdicts)) for i in range(2)
         ]
@@ -141,10 +141,10 @@ class Plain:
 
     def learn(self, x: np.ndarray, y: np.ndarray, origin: np.ndarray, unit: np.ndarray, learns: np.ndarray) -> None:
         for _ in range(ITERATIONS):
-            told, h = self.forward(x)
+            result, h = self.forward(x)
             error = np.zeros(2)
             for i in np.flatnonzero(learns):
-                e, small = (y[i] - origin[i]) / unit[i] - told[i], TOLERANCE[i] / unit[i]
+                e, small = (y[i] - origin[i]) / unit[i] - result[i], TOLERANCE[i] / unit[i]
                 error[i] = 0.0 if abs(e) <= small else e - np.sign(e) * small
             if not error.any():
                 return
@@ -165,21 +165,21 @@ class Plain:
 @pytest.mark.parametrize("absolute", [False, True])
 def test_the_whole_loop(absolute: bool) -> None:
     rows = system()
-    told, plain = walk(monitor(absolute), rows), Plain(absolute)
+    result, plain = walk(monitor(absolute), rows), Plain(absolute)
     seen: set[int] = set()
     for k in range(ROWS):
         value = np.asarray(rows.value[k])
         residual, taken, verdicts = plain.push(float(rows.time[k]), value[[2, 0]], float(value[1]))
         there = np.isfinite(value[[2, 0]])
-        np.testing.assert_array_equal(told.channel[k, [2, 0]], verdicts)
+        np.testing.assert_array_equal(result.channel[k, [2, 0]], verdicts)
         close = {"rtol": 1e-9, "atol": 1e-11}
-        np.testing.assert_allclose(told.reports.residual.value[k, [2, 0]][there], residual[there], **close)
+        np.testing.assert_allclose(result.reports.residual.value[k, [2, 0]][there], residual[there], **close)
         if k > 0:
-            held = told.reports.trust.value[k, [2, 0]]
-            trusted = (told.reports.trust.measured | told.reports.trust.filled)[k, [2, 0]]
+            held = result.reports.trust.value[k, [2, 0]]
+            trusted = (result.reports.trust.measured | result.reports.trust.filled)[k, [2, 0]]
             np.testing.assert_allclose(held[trusted], taken[trusted], **close)
         seen |= set(verdicts)
-    network = told.states.residual.network
+    network = result.states.residual.network
     for ours, theirs in (
         (network.hidden[0].weights, plain.w),
         (network.hidden[0].bias, plain.b),
@@ -190,19 +190,19 @@ def test_the_whole_loop(absolute: bool) -> None:
     assert seen == {OK, UNKNOWN, FAULT}
 
 
-def learned(told: Walk) -> np.ndarray:
+def learned(result: Walk) -> np.ndarray:
     """Whether the weights changed with each row."""
-    w = told.states.residual.network.output.weights.reshape(ROWS, -1)
+    w = result.states.residual.network.output.weights.reshape(ROWS, -1)
     return np.concatenate([[False], (np.diff(w, axis=0) != 0).any(axis=1)])
 
 
 def test_a_drift_is_never_learned_and_learning_goes_on_after_it() -> None:
-    told = walk(monitor(), system())
-    assert (told.channel[FAULTY, 2] == FAULT).all()
-    assert (np.abs(told.reports.residual.value[FAULTY, 2]) > THETA[0]).all()
-    assert not learned(told)[FAULTY].any()
-    assert learned(told)[FAULTY.stop + M : FAULTY.stop + 20].any()
-    assert (told.channel[FAULTY.stop + 1 : 100][:, [0, 2]] == OK).all()
+    result = walk(monitor(), system())
+    assert (result.channel[FAULTY, 2] == FAULT).all()
+    assert (np.abs(result.reports.residual.value[FAULTY, 2]) > THETA[0]).all()
+    assert not learned(result)[FAULTY].any()
+    assert learned(result)[FAULTY.stop + M : FAULTY.stop + 20].any()
+    assert (result.channel[FAULTY.stop + 1 : 100][:, [0, 2]] == OK).all()
 
 
 def test_no_lesson_reaches_across_a_hole_or_a_gap() -> None:
@@ -236,9 +236,9 @@ def test_the_stand_in_ends_at_its_horizon_and_the_sensor_is_unknown() -> None:
     rows = system(drift=0.0)
     value = np.asarray(rows.value).copy()
     value[70:, 2] += 1.0  # for good
-    told = walk(monitor(horizon=5), rows._replace(value=value))
-    filled = told.reports.trust.filled[70:90, 2]
+    result = walk(monitor(horizon=5), rows._replace(value=value))
+    filled = result.reports.trust.filled[70:90, 2]
     assert filled[:5].all()
     assert not filled[6:].any()
-    assert (told.channel[70:75, 2] == FAULT).all()
-    assert (told.channel[76:79, 2] == UNKNOWN).any()
+    assert (result.channel[70:75, 2] == FAULT).all()
+    assert (result.channel[76:79, 2] == UNKNOWN).any()

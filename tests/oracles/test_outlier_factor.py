@@ -41,9 +41,9 @@ def test_equals_scikit_learn(features: int, k: int) -> None:
             np.zeros((1, features)),
         ]
     )
-    told = factor(fit_history(points, 0, k=k), asked)
-    np.testing.assert_allclose(told, peer(points, k, asked), rtol=1e-6)
-    assert told[500:520].min() > 100
+    result = factor(fit_history(points, 0, k=k), asked)
+    np.testing.assert_allclose(result, peer(points, k, asked), rtol=1e-6)
+    assert result[500:520].min() > 100
 
 
 @pytest.mark.parametrize("features", [1, 3])
@@ -66,8 +66,8 @@ def test_between_two_clumps_far_apart_the_nearest_are_still_told_apart() -> None
 def test_histories_of_other_lengths(count: int) -> None:
     rng = np.random.default_rng(count)
     points, asked = rng.standard_normal((count, 3)), rng.standard_normal((50, 3))
-    told = factor(fit_history(points, 0, history=count), asked)
-    np.testing.assert_allclose(told, peer(points, 20, asked), rtol=1e-6)
+    result = factor(fit_history(points, 0, history=count), asked)
+    np.testing.assert_allclose(result, peer(points, 20, asked), rtol=1e-6)
 
 
 @pytest.mark.parametrize("features", [1, 3])
@@ -83,9 +83,9 @@ def test_of_what_is_no_number_nothing_is_told(features: int) -> None:
     """Nor is it infinitely far: where nothing is known nothing is blamed, and nothing cleared."""
     asked = np.full((2, features), 0.1)
     asked[0, -1] = np.nan
-    told = np.asarray(factor(history(features), asked))
-    assert np.isnan(told[0])
-    assert np.isfinite(told[1])
+    result = np.asarray(factor(history(features), asked))
+    assert np.isnan(result[0])
+    assert np.isfinite(result[1])
 
 
 def test_a_history_is_drawn_by_its_seed_and_knows_what_it_needs() -> None:
@@ -108,10 +108,10 @@ def history(features: int) -> LocalDensity:
 @pytest.mark.parametrize("raw", [False, True])
 def test_each_innovation_is_rated_alone(raw: bool) -> None:
     log = Log(11)
-    told = scores(OutlierFactor(history(1), raw=raw), log)
+    result = scores(OutlierFactor(history(1), raw=raw), log)
     asked = log.value / (1 if raw else SIGMA)
     expected = peer(np.asarray(history(1).points).T, 20, asked.reshape(-1, 1)).reshape(-1, 2)
-    np.testing.assert_allclose(told, np.where(log.valid, expected, np.nan), rtol=1e-6)
+    np.testing.assert_allclose(result, np.where(log.valid, expected, np.nan), rtol=1e-6)
 
 
 def means(spread: np.ndarray) -> Means:
@@ -122,7 +122,7 @@ def means(spread: np.ndarray) -> Means:
 
 def mean_loop(log: Log, spread: np.ndarray) -> np.ndarray:
     """Of the values less old than each window, as many as it should hold; those lacking since it began count 0."""
-    told = np.full((len(log.time), 2, len(LENGTHS)), np.nan)
+    result = np.full((len(log.time), 2, len(LENGTHS)), np.nan)
     for c in range(2):
         rows, last = [], -np.inf
         for k in log.seen(c, len(log.time) - 1):
@@ -132,8 +132,8 @@ def mean_loop(log: Log, spread: np.ndarray) -> np.ndarray:
             for w, length in enumerate(LENGTHS):
                 share = min(1.0, (t - log.time[rows[0]] + SPACING_S) / length)
                 e = log.value[rows, c][age <= length - SPACING_S / 2] / SIGMA[c]
-                told[k, c, w] = share * e.mean() / spread[w]
-    return told
+                result[k, c, w] = share * e.mean() / spread[w]
+    return result
 
 
 @pytest.mark.parametrize("gap_s", [0.0, 20.0])
@@ -146,7 +146,7 @@ def test_the_bank_is_as_a_loop_says(gap_s: float) -> None:
 
 def test_the_windowed_factor_is_that_of_the_means() -> None:
     log = Log(13, gap_s=20.0)
-    told = scores(WindowedOutlierFactor(history(3), means(SPREAD)), log)
+    result = scores(WindowedOutlierFactor(history(3), means(SPREAD)), log)
     asked = mean_loop(log, SPREAD)[log.valid]
-    np.testing.assert_allclose(told[log.valid], peer(np.asarray(history(3).points).T, 20, asked), rtol=1e-6)
-    assert np.isnan(told[~log.valid]).all()
+    np.testing.assert_allclose(result[log.valid], peer(np.asarray(history(3).points).T, 20, asked), rtol=1e-6)
+    assert np.isnan(result[~log.valid]).all()

@@ -1,7 +1,6 @@
 """The catalog's small parts against loops in NumPy, on random logs with holes, holds and repeats."""
 
 import functools
-from collections import deque
 
 import jax
 import jax.numpy as jnp
@@ -16,7 +15,6 @@ from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.types import FAULT, OK, UNKNOWN, Residual, Score
 from sensorfault.runtime.runners import samples
 from sensorfault.stages.decision.exceed import Exceed
-from sensorfault.stages.decision.persist import Persist
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.statistic.norm import Norm
 from sensorfault.stages.statistic.repeats import Repeats
@@ -58,7 +56,7 @@ def norm_monitor() -> Monitor:
 @given(seeds, chances, chances)
 def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) -> None:
     log = Log(seed, missing, held)
-    told = log.through(norm_monitor())
+    result = log.through(norm_monitor())
     named, tested_at, healthy_at, accused_at, seen_at = (
         [False] * CHANNELS,
         *([-np.inf] * CHANNELS for _ in range(4)),
@@ -68,10 +66,10 @@ def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) 
         error = {c: (log.value[k, c] - log.expected[k, c]) / SCALE[c] for c in fresh}
         score = sum(e**2 for e in error.values()) ** 0.5
         limit = LARGEST * (1 + 1 / (1 + np.exp(score)))
-        assert told.reports.scores[0].valid[k, 0] == bool(fresh)
+        assert result.reports.scores[0].valid[k, 0] == bool(fresh)
         if fresh:
-            np.testing.assert_allclose(told.reports.scores[0].value[k, 0], score, rtol=1e-12)
-            np.testing.assert_allclose(told.reports.limits[0][k, 0], limit, rtol=1e-12)
+            np.testing.assert_allclose(result.reports.scores[0].value[k, 0], score, rtol=1e-12)
+            np.testing.assert_allclose(result.reports.limits[0][k, 0], limit, rtol=1e-12)
         alarm = bool(fresh) and score > limit
         most = max((e**2 for e in error.values()), default=0.0)
         verdict = []
@@ -80,10 +78,10 @@ def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) 
                 named[c], tested_at[c] = alarm and error[c] ** 2 >= 0.5 * most, t
             verdict.append((FAULT if named[c] else OK) if t - tested_at[c] <= HOLD_S else UNKNOWN)
         sample = FAULT if FAULT in verdict else OK if OK in verdict else UNKNOWN
-        np.testing.assert_array_equal(told.channel[k], verdict)
-        np.testing.assert_array_equal(told.sensor[k], [max(verdict[:2]), verdict[2]])
-        assert told.sample[k] == sample
-        trust = told.reports.trust
+        np.testing.assert_array_equal(result.channel[k], verdict)
+        np.testing.assert_array_equal(result.sensor[k], [max(verdict[:2]), verdict[2]])
+        assert result.sample[k] == sample
+        trust = result.reports.trust
         for c in range(CHANNELS):
             if alarm and c in fresh and named[c]:
                 accused_at[c] = t
@@ -103,32 +101,26 @@ def test_norm_scaled_max_exceed_rebuild(seed: int, missing: float, held: float) 
 
 
 @functools.cache
-def repeats_monitor(needed: int, window: int) -> Monitor:
+def repeats_monitor() -> Monitor:
     branch = Branch(Repeats(CHANNELS), Fixed(jnp.zeros(CHANNELS)))
-    decision = Persist(CHANNELS, needed, window)
     rebuild = Rebuild(jnp.asarray(HORIZON_S), jnp.asarray(READMIT_S), CHANNELS)
-    return Monitor(FromBlock(CHANNELS), (branch,), decision, rebuild, jnp.full(CHANNELS, HOLD_S), (0, 1, 2))
+    return Monitor(FromBlock(CHANNELS), (branch,), Exceed(), rebuild, jnp.full(CHANNELS, HOLD_S), (0, 1, 2))
 
 
 @settings(max_examples=40, deadline=None)
-@given(seeds, chances, chances, st.sampled_from([(1, 1), (2, 5), (31, 31)]))
-def test_repeats_persist(seed: int, missing: float, held: float, rule: tuple[int, int]) -> None:
-    needed, window = rule
+@given(seeds, chances, chances)
+def test_repeats(seed: int, missing: float, held: float) -> None:
     log = Log(seed, missing, held)
-    if needed == 31:
-        log.value[:] = np.where(np.isnan(log.value), np.nan, 1.0)  # nothing but repeats
-    told = log.through(repeats_monitor(needed, window))
+    result = log.through(repeats_monitor())
     for c in range(CHANNELS):
-        last, run, memory, named, tested_at = None, 0, deque(maxlen=window), False, -np.inf
+        last, run, tested_at = None, 0, -np.inf
         for k, t in enumerate(log.time):
             if log.fresh[k, c]:
                 run = run + 1 if log.value[k, c] == last else 0
-                last = log.value[k, c]
-                memory.append(run > 0)
-                named, tested_at = sum(memory) >= needed, t
-                assert told.reports.scores[0].value[k, c] == run
-            verdict = (FAULT if named else OK) if t - tested_at <= HOLD_S else UNKNOWN
-            assert told.channel[k, c] == verdict
+                last, tested_at = log.value[k, c], t
+                assert result.reports.scores[0].value[k, c] == run
+            verdict = (FAULT if run else OK) if t - tested_at <= HOLD_S else UNKNOWN
+            assert result.channel[k, c] == verdict
 
 
 fixed_point = jax.jit(lambda rule: rule.fixed_point())

@@ -32,16 +32,16 @@ def test_forward_pass(activation: str) -> None:
     value = center + half * rng.uniform(-1.5, 1.5, (20, CHANNELS))
     hold_s = jnp.zeros(CHANNELS)
     branch = Branch(Norm(jnp.ones(CHANNELS)), Fixed(jnp.array([jnp.inf])))
-    told = walk(Monitor(residual, (branch,), Exceed(), Drop(), hold_s, (0, 1, 2, 3)), log(value)).reports
+    result = walk(Monitor(residual, (branch,), Exceed(), Drop(), hold_s, (0, 1, 2, 3)), log(value)).reports
     for k in range(20):
         x = (value[k] - center) / half
         h = [ACTIVATIONS[activation](sum(w[j, i] * x[i] for i in range(CHANNELS)) + b[j]) for j in range(HIDDEN)]
         rebuilt = (beta @ h + offset) * half + center
         error = np.where(watched, value[k] - rebuilt, 0.0)
-        np.testing.assert_allclose(told.residual.value[k], error, rtol=1e-12, atol=1e-12)
-        np.testing.assert_array_equal(told.residual.valid[k], watched)
-        np.testing.assert_allclose(told.scores[0].value[k, 0], np.linalg.norm(error[watched]), rtol=1e-12)
-        np.testing.assert_allclose(told.scores[0].blame[k, 0], error**2 / (error @ error), rtol=1e-10, atol=1e-12)
+        np.testing.assert_allclose(result.residual.value[k], error, rtol=1e-12, atol=1e-12)
+        np.testing.assert_array_equal(result.residual.valid[k], watched)
+        np.testing.assert_allclose(result.scores[0].value[k, 0], np.linalg.norm(error[watched]), rtol=1e-12)
+        np.testing.assert_allclose(result.scores[0].blame[k, 0], error**2 / (error @ error), rtol=1e-10, atol=1e-12)
 
 
 def test_exchanged_channels_and_whom_they_blame() -> None:
@@ -54,7 +54,7 @@ def test_exchanged_channels_and_whom_they_blame() -> None:
     branch = Branch(Exchange(jnp.asarray(scale)), Fixed(jnp.array([jnp.inf])))
     value = rng.uniform(-1, 1, (12, CHANNELS))
     owner = tuple(range(CHANNELS))
-    told = walk(Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(CHANNELS), owner), log(value)).reports
+    result = walk(Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(CHANNELS), owner), log(value)).reports
 
     def left(x: np.ndarray) -> np.ndarray:
         return x - beta @ np.tanh(w @ x + b)
@@ -65,8 +65,8 @@ def test_exchanged_channels_and_whom_they_blame() -> None:
         for c in range(CHANNELS):
             other = value[k].copy()
             other[c] = value[k - 1, c]
-            np.testing.assert_allclose(told.residual.extra[k, c], left(other), rtol=1e-10, atol=1e-12)
-            np.testing.assert_allclose(told.residual.expected[k, c], (other - left(other))[c], rtol=1e-10, atol=1e-12)
+            np.testing.assert_allclose(result.residual.extra[k, c], left(other), rtol=1e-10, atol=1e-12)
+            np.testing.assert_allclose(result.residual.expected[k, c], (other - left(other))[c], rtol=1e-10, atol=1e-12)
             taken[c] = max(norm**2 - np.linalg.norm(left(other) / scale) ** 2, 0.0)
-        np.testing.assert_allclose(told.scores[0].value[k, 0], norm, rtol=1e-10)
-        np.testing.assert_allclose(told.scores[0].blame[k, 0], taken / norm**2, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(result.scores[0].value[k, 0], norm, rtol=1e-10)
+        np.testing.assert_allclose(result.scores[0].blame[k, 0], taken / norm**2, rtol=1e-9, atol=1e-12)

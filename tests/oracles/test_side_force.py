@@ -38,9 +38,9 @@ def log() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def expected() -> np.ndarray:
     time, value, fresh = log()
     out = np.full(ROWS, np.nan)
-    speed, heard, y, last, since = 0.0, -np.inf, 0.0, -np.inf, -np.inf
+    speed, received, y, last, since = 0.0, -np.inf, 0.0, -np.inf, -np.inf
     for t in range(ROWS):
-        if fresh[t, :6].all() and time[t] - heard <= STALE and speed >= 15 / 3.6:
+        if fresh[t, :6].all() and time[t] - received <= STALE and speed >= 15 / 3.6:
             e = LEFT @ value[t, 3:6] - LEVEL - GAIN * speed * (UP @ value[t, :3] - DRIFT)
             dt = time[t] - last
             if dt > T:
@@ -51,7 +51,7 @@ def expected() -> np.ndarray:
             if time[t] - since >= 4 * T:
                 out[t] = abs(y)
         if fresh[t, 6]:
-            speed, heard = np.hypot(value[t, 6], value[t, 7]), time[t]
+            speed, received = np.hypot(value[t, 6], value[t, 7]), time[t]
     return out
 
 
@@ -61,8 +61,8 @@ def test_score_of_the_loop() -> None:
     residual = SideForce(unit, jnp.asarray(GAIN), jnp.asarray(STALE), (6, 7), False, 8)
     branch = Branch(Lasting(jnp.asarray(T), jnp.ones(8, bool)), Fixed(jnp.array([jnp.inf])), subject=MOTION)
     monitor = Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(8), (0, 0, 0, 1, 1, 1, 2, 2))
-    told = walk(monitor, samples(time, value, fresh)).reports.scores[0]
-    score = np.where(told.valid[:, 0], told.value[:, 0], np.nan)
+    result = walk(monitor, samples(time, value, fresh)).reports.scores[0]
+    score = np.where(result.valid[:, 0], result.value[:, 0], np.nan)
     want = expected()
     assert 100 < np.isfinite(want).sum() < 350
     np.testing.assert_allclose(score, want, rtol=1e-10)

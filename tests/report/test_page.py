@@ -21,7 +21,7 @@ from sensorfault.report import page
 from sensorfault.report.page import write_page
 from sensorfault.report.page_lines import extremes, line, near, runs
 from sensorfault.report.page_sketch import Sketch, replaced, stale
-from sensorfault.report.page_words import clock, found, result
+from sensorfault.report.page_words import clock, found, headline
 from sensorfault.runtime.result import Detection, Trace
 
 RATE = 50
@@ -98,8 +98,8 @@ def drive(seconds: float = 60, name: str = "drive", gyro: str = "gyro") -> Detec
     )
     sensor = np.column_stack((channel[:, :2].max(axis=1), channel[:, 2]))
     events = (
-        Event(10.0, 10.0, "sensor", gyro, "z", "short", 9.5, 3.0, "elm"),
-        Event(30.0, None, "sensor", gyro, "x", "bias", 7.25, 3.0, "elm"),
+        Event(10.0, 10.0, "sensor", gyro, "z", "spike", 9.5, 3.0, "elm"),
+        Event(30.0, None, "sensor", gyro, "x", "offset", 7.25, 3.0, "elm"),
     )
     score = rng.chisquare(3, rows)
     score[500] = 1e4
@@ -123,9 +123,9 @@ def still(rows: int) -> np.ndarray:
 
 
 TRUTH = (
-    Fault("short", "gyro", "z", 10.0, 0.02, 180.0),
+    Fault("spike", "gyro", "z", 10.0, 0.02, 180.0),
     Fault("drift", "gnss", None, 50.0, 5.0, 1.0),
-    Fault("bias", "gyro", "x", 30.0, 10.0, 2.0, sigmas=True),
+    Fault("offset", "gyro", "x", 30.0, 10.0, 2.0, sigmas=True),
 )
 
 
@@ -310,10 +310,10 @@ def test_a_channel_that_is_not_judged_says_so(tmp_path):
 
 def test_events_without_a_sensor_are_told_apart(tmp_path):
     nameless = Event(1.0, 2.0, "sensor", None, None, "unknown", 5.0, 1.0, "elm")
-    events = (nameless, replace(nameless, subject="motion"), replace(nameless, kind="miss"))
+    events = (nameless, replace(nameless, subject="motion"), replace(nameless, kind="missing"))
     detection = replace(drive(), events=events)
     said = "1 fault, 1 of them not laid to one sensor, 1 implausible motion, 1 gap in the log; 1 sensor watched"
-    assert result(Sketch.of(detection)).startswith(said)
+    assert headline(Sketch.of(detection)).startswith(said)
     rows = written(tmp_path, detection).rows
     assert [row[3] for row in rows] == ["unknown which", "vehicle motion", "all (gap in the log)"]
     assert [row[6] for row in rows] == ["5 / 1", "5 / 1", "5 / 1 s silent"]
@@ -322,8 +322,8 @@ def test_events_without_a_sensor_are_told_apart(tmp_path):
 def test_event_rows_zoom_to_their_time(tmp_path):
     seen = written(tmp_path, drive())
     assert seen.rows == [
-        ["1", "10.00 s ", "10.00 s ", "gyro", "z", "short", "9.5 / 3", "elm"],
-        ["2", "30.00 s ", "lasts", "gyro", "x", "bias", "7.25 / 3", "elm"],
+        ["1", "10.00 s ", "10.00 s ", "gyro", "z", "spike", "9.5 / 3", "elm"],
+        ["2", "30.00 s ", "lasts", "gyro", "x", "offset", "7.25 / 3", "elm"],
     ]
     times = [(float(attrs["data-from"]), float(attrs["data-to"])) for tag, attrs in seen.tags if "data-from" in attrs]
     assert times == [(10.0, 10.0), (30.0, pytest.approx(59.98))]
@@ -333,14 +333,14 @@ def test_injected_fault_that_was_not_found_is_shown_as_missed(tmp_path):
     seen = written(tmp_path, drive(), TRUTH)
     assert [row[-1] for row in seen.rows[2:]] == ["found", "found", "missed"]  # in the order of time
     assert "2 of 3 found" in seen.text
-    told = [text for trace in seen.figures["verdicts"]["data"] for text in trace["hovertext"] if "missed" in text]
-    assert told == ["injected drift in gnss , missed"] * 2  # the hollow line, and the cross on it
+    result = [text for trace in seen.figures["verdicts"]["data"] for text in trace["hovertext"] if "missed" in text]
+    assert result == ["injected drift in gnss , missed"] * 2  # the hollow line, and the cross on it
     lines = [s["line"]["dash"] for s in seen.figures["signals-1"]["layout"]["shapes"] if s["type"] == "line"]
     assert lines == ["dot"]
 
 
 def test_found_needs_the_same_sensor_and_overlap():
-    fault = Fault("bias", "gyro", "x", 30.0, 10.0)
+    fault = Fault("offset", "gyro", "x", 30.0, 10.0)
     event = Event(39.0, 45.0, "sensor", "gyro", "y", "drift", None, None, "elm")
     assert found(fault, [event])
     assert found(fault, [replace(event, start_s=0.0, end_s=None)])
@@ -351,10 +351,10 @@ def test_found_needs_the_same_sensor_and_overlap():
 
 
 def test_found_under_another_name_says_so(tmp_path):
-    truth = (Fault("drift", "gyro", None, 30.0, 10.0), Fault("short", "gyro", "z", 10.0, 0.02))
-    near_miss = Event(9.0, 11.0, "sensor", "gyro", "x", "short", 9.5, 3.0, "elm")
+    truth = (Fault("drift", "gyro", None, 30.0, 10.0), Fault("spike", "gyro", "z", 10.0, 0.02))
+    near_miss = Event(9.0, 11.0, "sensor", "gyro", "x", "spike", 9.5, 3.0, "elm")
     detection = replace(drive(), events=(near_miss, *drive().events))
-    assert [row[-1] for row in written(tmp_path, detection, truth).rows[3:]] == ["found", "found as bias of x"]
+    assert [row[-1] for row in written(tmp_path, detection, truth).rows[3:]] == ["found", "found as offset of x"]
 
 
 @pytest.mark.parametrize(
@@ -430,7 +430,7 @@ def test_names_from_files_stay_names(tmp_path):
         detection.log, notes=("<b>note",), channels=(Channel("<i>x", evil, "<u>"), *detection.log.channels[1:])
     )
     named = replace(detection.events[0], channel="<i>x", kind="<s>", method="<s>")
-    truth = (Fault("bias", evil, "<i>x", 10.0, 1.0), Fault("bias", evil, "<i>x", 50.0, 1.0))
+    truth = (Fault("offset", evil, "<i>x", 10.0, 1.0), Fault("offset", evil, "<i>x", 50.0, 1.0))
     traces = (Trace(evil, "<i>x", detection.traces[0].score, detection.traces[0].limit),)
     hostile = replace(
         detection, log=log, watched=(False, False, False), events=(named,), method="</script>", traces=traces
@@ -504,7 +504,7 @@ def test_an_hour_of_twelve_channels_is_a_small_page():
     verdict = rng.integers(0, 3, (rows, 12)).astype(np.int8)
     limit = np.full(rows, 3.0)
     traces = tuple(Trace("norm", c.path, np.abs(value[:, i]), limit) for i, c in enumerate(channels))
-    events = tuple(Event(25.0 * i, 25.0 * i + 20, "sensor", "gyro", "x", "bias", 9.0, 3.0, "elm") for i in range(140))
+    events = tuple(Event(25.0 * i, 25.0 * i + 20, "sensor", "gyro", "x", "offset", 9.0, 3.0, "elm") for i in range(140))
     verdicts = verdict, verdict[:, ::3], verdict[:, 0], still(rows)
     detection = Detection(log, "elm", (True,) * 12, *verdicts, value, traces, events)
     assert len(json.dumps(figures(detection))) < 12e6

@@ -16,7 +16,7 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.fit import fit
 from sensorfault.runtime.detect import Live, detect
 from sensorfault.runtime.result import Detection
-from sensorfault.runtime.runners import Now
+from sensorfault.runtime.runners import StepResult
 
 
 @cache
@@ -30,7 +30,7 @@ def fresh_live() -> Live:
 
 
 @cache
-def lived(told_what_is_fresh: bool) -> tuple[list[Now], list[Event]]:
+def lived(told_what_is_fresh: bool) -> tuple[list[StepResult], list[Event]]:
     """The lying log pushed row by row."""
     live, log = fresh_live(), fitted.lying().log
     says = [
@@ -71,9 +71,9 @@ def test_events_that_go_on_are_open_and_then_end() -> None:
         live.push(time, value)
         open_at[round(float(time), 2)] = live.open()
     (silent,) = open_at[167.0]
-    assert (silent.sensor, silent.channel, silent.kind, silent.end_s) == ("gyro", None, "miss", None)
+    assert (silent.sensor, silent.channel, silent.kind, silent.end_s) == ("gyro", None, "missing", None)
     assert open_at[164.9] == open_at[169.9] == []
-    assert [event.kind for event in live.events] == ["miss"]
+    assert [event.kind for event in live.events] == ["missing"]
 
 
 NAMED = [fault for fault in fitted.FAULTS if fault.kind not in ("scale", "delay")]  # these look like another kind
@@ -101,7 +101,7 @@ def test_a_healthy_log_has_no_events() -> None:
 
 def test_an_event_that_is_over_has_an_end() -> None:
     """Also the last one of a log."""
-    lying = inject(fitted.unseen(), [Fault("bias", "gyro", "z", 110.0, 5.0, 20.0, sigmas=True)]).log
+    lying = inject(fitted.unseen(), [Fault("offset", "gyro", "z", 110.0, 5.0, 20.0, sigmas=True)]).log
     assert [event.end_s for event in detect(fitted.model(), lying).events] == [pytest.approx(114.98)]
 
 
@@ -159,7 +159,7 @@ def test_nothing_stands_in_for_what_is_missing() -> None:
 def test_a_faulty_value_is_replaced_or_left_out() -> None:
     """A named channel never keeps the value it was named for: a stand-in for ten seconds, then nothing."""
     healthy = fitted.unseen()
-    lying = inject(healthy, [Fault("bias", "gyro", "z", 110.0, 30.0, 20.0, sigmas=True)])
+    lying = inject(healthy, [Fault("offset", "gyro", "z", 110.0, 30.0, 20.0, sigmas=True)])
     found = detect(fitted.model(), lying.log)
     z = 2
     accused = found.channel[:, z] == FAULT
@@ -200,11 +200,11 @@ def test_channels_in_another_order_and_others_beside_them() -> None:
 
 
 def test_progress_runs_from_nothing_to_all() -> None:
-    told: list[float] = []
-    detect(fitted.model(), fitted.rig(), told.append)
-    assert told == sorted(told)
-    assert len(told) == 2  # 10,000 rows, 8192 at a time
-    assert told[-1] == 1.0
+    result: list[float] = []
+    detect(fitted.model(), fitted.rig(), result.append)
+    assert result == sorted(result)
+    assert len(result) == 2  # 10,000 rows, 8192 at a time
+    assert result[-1] == 1.0
 
 
 def test_a_log_is_judged_from_a_fresh_start_each_time() -> None:
@@ -280,15 +280,15 @@ def without(start_s: float, end_s: float) -> Log:
 
 def test_a_hole_in_the_log_is_nobodys_silence() -> None:
     (hole,) = detect(fitted.model(), without(110.02, 115.02)).events
-    assert (hole.sensor, hole.kind, hole.start_s) == (None, "miss", pytest.approx(110.02))
+    assert (hole.sensor, hole.kind, hole.start_s) == (None, "missing", pytest.approx(110.02))
     assert detect(fitted.model(), without(110.02, 110.52)).events == ()
 
 
 def test_a_frozen_axis_accuses_nobody_else() -> None:
     """Once: the joint test, which a frozen axis upsets too, was answered in the same round."""
-    jammed = inject(fitted.unseen(), [Fault("jam", "gyro", "y", 140.0, 5.0)]).log
+    jammed = inject(fitted.unseen(), [Fault("frozen", "gyro", "y", 140.0, 5.0)]).log
     (event,) = detect(fitted.model(), jammed).events
-    assert (event.sensor, event.channel, event.kind) == ("gyro", "y", "jam")
+    assert (event.sensor, event.channel, event.kind) == ("gyro", "y", "frozen")
 
 
 def test_an_empty_log_is_a_sentence() -> None:

@@ -46,11 +46,13 @@ def test_a_fleet_has_a_leading_axis_everywhere() -> None:
 def test_the_cpu_computes_what_was_put_nowhere_and_a_choice_made_before_counts() -> None:
     """Also where there is a GPU: a single log takes it twelve to thirty times as long."""
     tell = "import sensorfault.core._jax, jax; print(jax.config.jax_default_device)"
-    told = {}
+    result = {}
     for chosen in ("", "cpu"):
         env = {name: value for name, value in os.environ.items() if name != "JAX_PLATFORMS"} | {"JAX_PLATFORMS": chosen}
-        told[chosen] = subprocess.run([sys.executable, "-c", tell], env=env, capture_output=True, text=True, check=True)
-    assert [one.stdout.strip() for one in told.values()] == ["cpu", "None"]
+        result[chosen] = subprocess.run(
+            [sys.executable, "-c", tell], env=env, capture_output=True, text=True, check=True
+        )
+    assert [one.stdout.strip() for one in result.values()] == ["cpu", "None"]
 
 
 def test_a_step_answers_with_plain_numbers(stepper: Stepper) -> None:

@@ -24,21 +24,21 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, monkeypatch: pytest.M
     path = tmp_path / "drive.csv"
     write(fitted.lying().log, path)
     whole = detect(fitted.model(), read(path))
-    heard: list[float] = []
+    received: list[float] = []
     seen: list[tuple[Detection, float]] = []
-    told = detect_long(fitted.model(), path, tell=heard.append, see=lambda part, share: seen.append((part, share)))
-    assert len(heard) > 5
-    assert told.rows == len(whole.log)
-    np.testing.assert_allclose(told.log.time, whole.log.time[[0, -1]])
-    assert len(told.events) == len(whole.events) > 5
-    for mine, theirs in zip(told.events, whole.events, strict=True):
+    result = detect_long(fitted.model(), path, tell=received.append, see=lambda part, share: seen.append((part, share)))
+    assert len(received) > 5
+    assert result.rows == len(whole.log)
+    np.testing.assert_allclose(result.log.time, whole.log.time[[0, -1]])
+    assert len(result.events) == len(whole.events) > 5
+    for mine, theirs in zip(result.events, whole.events, strict=True):
         assert (mine.sensor, mine.channel, mine.kind) == (theirs.sensor, theirs.channel, theirs.kind)
         assert mine.start_s == pytest.approx(theirs.start_s, abs=1e-6)
         assert mine.end_s == pytest.approx(theirs.end_s, abs=1e-6)
         assert mine.peak_score == pytest.approx(theirs.peak_score)
     assert sum(share for _, share in seen) == pytest.approx(1)
     assert max(share for _, share in seen) < 0.5
-    assert seen[-1][0].events == told.events
+    assert seen[-1][0].events == result.events
     for name in ("channel", "sensor", "sample", "motion", "repaired"):
         parts = np.concatenate([getattr(part, name) for part, _ in seen])
         np.testing.assert_allclose(parts, getattr(whole, name), atol=1e-9)
@@ -55,28 +55,28 @@ def test_without_a_model_one_is_fitted_on_the_beginning(tmp_path: Path, monkeypa
         return fitted.model()
 
     whole = read(path)
-    told = detect_long(fit, path, learn=0.2)
+    result = detect_long(fit, path, learn=0.2)
     (early,) = given
     np.testing.assert_array_equal(early.value, whole.value[: len(early)])
-    assert told.fitted_on_s == pytest.approx((whole.time[0], whole.time[len(early)]))
+    assert result.fitted_on_s == pytest.approx((whole.time[0], whole.time[len(early)]))
     assert 0.1 < len(early) / len(whole) <= 0.2
-    np.testing.assert_allclose(told.log.time, whole.time[[len(early), -1]])
-    assert told.rows == len(whole) - len(early)
-    assert told.events
+    np.testing.assert_allclose(result.log.time, whole.time[[len(early), -1]])
+    assert result.rows == len(whole) - len(early)
+    assert result.events
     monkeypatch.setattr(long_log, "EARLY", 1000)
     detect_long(fit, path, learn=0.9)
     assert given[1].value.size == 1000
     monkeypatch.undo()
-    told = detect_long(fit, path, learn=0.3)  # all in one part
+    result = detect_long(fit, path, learn=0.3)  # all in one part
     assert len(given[2]) / len(whole) == pytest.approx(0.3, abs=0.01)
-    assert told.rows == len(whole) - len(given[2])
+    assert result.rows == len(whole) - len(given[2])
 
     def silent(_path: Path, take: Callable[[Log], None], *_: object) -> Said:
         take(whole)
         return Said((), ())
 
     monkeypatch.setattr(long_log, "read_parts", silent)  # a reader that does not tell how far it is
-    assert detect_long(fit, path, learn=0.3).rows == told.rows
+    assert detect_long(fit, path, learn=0.3).rows == result.rows
 
 
 def test_a_model_of_epochs_is_a_sentence(tmp_path: Path) -> None:

@@ -7,13 +7,13 @@ import pytest
 
 from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
-from sensorfault.runtime.runners import Now
-from sensorfault.runtime.tracker import GAP_S, QUIET_S, Tracker, Watch
+from sensorfault.runtime.runners import StepResult
+from sensorfault.runtime.tracker import GAP_S, QUIET_S, EventContext, Tracker
 
 TICK_S = 0.02
 NAMES = (("gyro", "x"), ("gyro", "y"), ("gnss", "east"), ("gnss", "north"))
 PERIOD_S = np.array([0.02, 0.02, 0.1, 0.1])
-WATCH = Watch(
+WATCH = EventContext(
     method="hand",
     sensor=tuple(sensor for sensor, _ in NAMES),
     channel=tuple(channel for _, channel in NAMES),
@@ -31,11 +31,11 @@ BEFORE_HOLE = 51  # ticks, the last of them with a fix
 class Drive:
     """Ticks of 20 ms, healthy unless told otherwise; every event that ended is in `ended`."""
 
-    def __init__(self, watch: Watch = WATCH) -> None:
+    def __init__(self, watch: EventContext = WATCH) -> None:
         self.tracker = Tracker(watch)
         self.ended: list[Event] = []
         self.time: float | None = None
-        self.heard = np.full(4, -1e12)
+        self.received = np.full(4, -1e12)
         self.count = 0
 
     def tick(
@@ -62,7 +62,7 @@ class Drive:
         if measured is not None:
             value[list(accused)] = measured
         top = score if score is not None else (5.0 if accused else 0.1)
-        told = Now(
+        result = StepResult(
             channel=verdict,
             sensor=np.array([verdict[:2].max(), verdict[2:].max()]),
             sample=(FAULT if accused else OK) if sample is None else sample,
@@ -72,16 +72,16 @@ class Drive:
             value=value,
             residual=residual,
             valid=comes,
-            silence=now - self.heard,
+            silence=now - self.received,
         )
-        self.ended += self.tracker.push(now, gap_s, value, told)
-        self.heard[comes] = now
+        self.ended += self.tracker.push(now, gap_s, value, result)
+        self.received[comes] = now
         self.time = now
         self.count += 1
 
-    def run(self, ticks: int, **told: object) -> "Drive":
+    def run(self, ticks: int, **result: object) -> "Drive":
         for _ in range(ticks):
-            self.tick(**told)  # type: ignore[arg-type]
+            self.tick(**result)  # type: ignore[arg-type]
         return self
 
     def quiet(self) -> "Drive":
@@ -115,7 +115,7 @@ def test_one_event_from_first_to_last_faulty_sample() -> None:
     assert event == replace(open_, end_s=event.end_s)
     assert event.end_s == at(79)
     assert (event.sensor, event.channel, event.kind, event.subject, event.method) == (
-        *("gyro", "x", "bias", "sensor", "hand"),
+        *("gyro", "x", "offset", "sensor", "hand"),
     )
 
 
@@ -158,7 +158,7 @@ def test_a_verdict_that_is_only_held_has_no_score() -> None:
     assert event.limit is None
 
 
-@pytest.mark.parametrize(("ticks", "kind"), [(1, "short"), (2, "short"), (40, "bias")])
+@pytest.mark.parametrize(("ticks", "kind"), [(1, "spike"), (2, "spike"), (40, "offset")])
 def test_the_kind_comes_from_the_measurements_while_it_lasts(ticks: int, kind: str) -> None:
     """Healthy measurements after the last accusation do not water it down."""
     assert Drive().run(20).run(ticks, accused={X: 4.0}).quiet().only().kind == kind
@@ -169,7 +169,7 @@ def test_healthy_looking_samples_within_an_event_count() -> None:
     drive = Drive()
     for _ in range(12):
         drive.run(1, accused={X: 4.0}, measured=1.0)
-    assert drive.quiet().only().kind == "jam"
+    assert drive.quiet().only().kind == "frozen"
 
 
 def test_each_measurement_counts_once() -> None:
@@ -182,7 +182,7 @@ def test_each_measurement_counts_once() -> None:
 
 def test_two_channels_of_a_sensor_with_the_same_fault_are_one_event() -> None:
     event = Drive().run(1, accused={X: 4.0}, score=3.0).run(30, accused={X: 4.0, Y: -5.0}).quiet().only()
-    assert (event.sensor, event.channel, event.kind) == ("gyro", None, "bias")
+    assert (event.sensor, event.channel, event.kind) == ("gyro", None, "offset")
     assert event.start_s == at(0)
     assert event.end_s == at(30)
     assert event.peak_score == 5.0
@@ -202,7 +202,7 @@ def test_channels_that_one_test_accuses_are_one_event_of_the_clearest_kind() -> 
     for _ in range(30):
         drive.run(1, accused={X: 4.0, Y: 0.1})
     event = drive.quiet().only()
-    assert (event.sensor, event.channel, event.kind) == ("gnss", "latitude, longitude", "bias")
+    assert (event.sensor, event.channel, event.kind) == ("gnss", "latitude, longitude", "offset")
     apart = Drive(fix).run(50).run(5, accused={X: 4.0}).run(30, accused={X: 4.0, Y: 0.1}).quiet()
     assert [event.channel for event in apart.ended] == ["latitude", "longitude"]
 
@@ -212,7 +212,7 @@ def test_two_channels_with_different_faults_are_two_events() -> None:
     for i in range(60):
         drive.run(1, accused={X: 4.0, Y: i * 0.2})
     drive.quiet()
-    assert {(event.channel, event.kind) for event in drive.ended} == {("x", "bias"), ("y", "drift")}
+    assert {(event.channel, event.kind) for event in drive.ended} == {("x", "offset"), ("y", "drift")}
 
 
 def test_channels_of_different_sensors_are_not_merged() -> None:
@@ -236,7 +236,7 @@ def test_a_sensor_that_falls_silent_is_missing_from_when_it_should_have_spoken()
     drive = Drive().run(50)
     drive.run(100, absent=(X, Y))
     (open_,) = drive.tracker.open()
-    assert (open_.sensor, open_.channel, open_.kind, open_.end_s) == ("gyro", None, "miss", None)
+    assert (open_.sensor, open_.channel, open_.kind, open_.end_s) == ("gyro", None, "missing", None)
     assert open_.start_s == at(50)
     assert open_.peak_score == pytest.approx(100 * TICK_S)  # since it last spoke, as the limit is
     assert open_.limit == pytest.approx(WATCH.silent_after_s[X])
@@ -247,7 +247,7 @@ def test_a_sensor_that_falls_silent_is_missing_from_when_it_should_have_spoken()
 def test_a_silence_of_what_is_allowed_is_none() -> None:
     assert Drive().run(50).run(2, absent=(X, Y)).run(50).ended == []  # three periods from one value to the next
     event = Drive().run(50).run(3, absent=(X, Y)).run(50).only()
-    assert event.kind == "miss"
+    assert event.kind == "missing"
     assert event.peak_score > event.limit
 
 
@@ -262,7 +262,7 @@ def test_a_slow_sensor_may_be_silent_for_longer() -> None:
 
 def test_a_channel_that_falls_silent_alone_is_named() -> None:
     event = Drive().run(50).run(20, absent=(Y,)).run(10).only()
-    assert (event.sensor, event.channel, event.kind) == ("gyro", "y", "miss")
+    assert (event.sensor, event.channel, event.kind) == ("gyro", "y", "missing")
 
 
 def test_a_silence_that_goes_on_at_the_end_stays_open() -> None:
@@ -277,7 +277,7 @@ def test_a_hole_in_the_log_is_one_miss_of_no_sensor() -> None:
     drive = Drive().run(BEFORE_HOLE)
     drive.run(1, gap_s=5.0).run(20)
     event = drive.only()
-    assert (event.sensor, event.channel, event.kind) == (None, None, "miss")
+    assert (event.sensor, event.channel, event.kind) == (None, None, "missing")
     last = BEFORE_HOLE - 1
     assert (event.start_s, event.end_s) == (at(last), pytest.approx(START_S + last * TICK_S + 5.0))
     assert event.peak_score == pytest.approx(5.0)
@@ -291,7 +291,7 @@ def test_a_short_hole_is_jitter(gap_s: float) -> None:
 def test_a_sensor_silent_before_and_after_a_hole_is_still_missing() -> None:
     drive = Drive().run(50).run(10, absent=(X, Y)).run(1, absent=(X, Y), gap_s=5.0).run(10, absent=(X, Y))
     (open_,) = drive.tracker.open()
-    assert (open_.sensor, open_.kind, open_.start_s) == ("gyro", "miss", at(50))
+    assert (open_.sensor, open_.kind, open_.start_s) == ("gyro", "missing", at(50))
 
 
 @pytest.mark.parametrize("late", [1, 10, 14])
@@ -306,7 +306,7 @@ def test_a_first_fix_that_comes_late_is_no_miss(late: int) -> None:
 def test_a_sensor_that_never_speaks_is_missing() -> None:
     drive = Drive().run(100, absent=(EAST, NORTH))
     (event,) = drive.tracker.open()
-    assert (event.sensor, event.channel, event.kind) == ("gnss", None, "miss")
+    assert (event.sensor, event.channel, event.kind) == ("gnss", None, "missing")
     assert START_S <= event.start_s <= START_S + 0.1 + 1e-6
 
 
@@ -314,8 +314,8 @@ def test_a_fault_and_a_silence_at_once() -> None:
     drive = Drive().run(50)
     drive.run(50, accused={X: 4.0}, absent=(EAST, NORTH))
     assert {(event.sensor, event.channel, event.kind) for event in drive.tracker.open()} == {
-        ("gyro", "x", "bias"),
-        ("gnss", None, "miss"),
+        ("gyro", "x", "offset"),
+        ("gnss", None, "missing"),
     }
     starts = [event.start_s for event in drive.tracker.open()]
     assert starts == sorted(starts)

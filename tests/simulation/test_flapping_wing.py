@@ -9,8 +9,8 @@ from sensorfault.simulation.road import Simulated
 from sensorfault.vehicles.fixed_wing import roles
 
 
-def column(told: Simulated, path: str, truth: bool = False) -> np.ndarray:
-    log = told.truth if truth else told.log
+def column(result: Simulated, path: str, truth: bool = False) -> np.ndarray:
+    log = result.truth if truth else result.log
     return log.value[:, log.index(path)]
 
 

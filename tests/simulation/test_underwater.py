@@ -27,17 +27,17 @@ def test_true_ranges_are_distances_on_the_ellipsoid() -> None:
 def test_leaders_take_turns() -> None:
     log = sail(1000.0, 2, Ranging(leaders=3, period_s=6.0, lost=0.1)).log
     ranges = [log.index(f"leader{j}.range") for j in (1, 2, 3)]
-    heard = log.fresh[:, ranges]
-    assert (heard.sum(axis=1) <= 1).all()
-    assert (np.abs(heard.sum(axis=0) - 150) < 20).all()
-    assert np.isnan(log.value[:, ranges][~heard]).all()
+    received = log.fresh[:, ranges]
+    assert (received.sum(axis=1) <= 1).all()
+    assert (np.abs(received.sum(axis=0) - 150) < 20).all()
+    assert np.isnan(log.value[:, ranges][~received]).all()
 
 
 def test_noise_is_as_large_as_asked_and_echoes_are_long() -> None:
     mission = sail(3000.0, 5, Ranging(sigma_m=2.0, outliers=0.1, outlier_m=50.0))
     column = mission.log.index("leader1.range")
-    heard = mission.log.fresh[:, column]
-    error = (mission.log.value - mission.truth.value)[heard, column]
+    received = mission.log.fresh[:, column]
+    error = (mission.log.value - mission.truth.value)[received, column]
     assert 1.4826 * np.median(np.abs(error - np.median(error))) == pytest.approx(2.0, rel=0.25)
     assert error.max() > 25.0 > -error.min()
 
@@ -56,6 +56,6 @@ def test_too_short() -> None:
 def test_sound_faster_than_assumed_makes_ranges_short() -> None:
     mission = sail(2000.0, 6, Ranging(sigma_m=0.5, sound=1.05))
     column = mission.log.index("leader2.range")
-    heard = mission.log.fresh[:, column]
-    told = mission.log.value[heard, column] / mission.truth.value[heard, column]
-    assert told.mean() == pytest.approx(1 / 1.05, rel=1e-3)
+    received = mission.log.fresh[:, column]
+    result = mission.log.value[received, column] / mission.truth.value[received, column]
+    assert result.mean() == pytest.approx(1 / 1.05, rel=1e-3)

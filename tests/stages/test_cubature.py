@@ -27,30 +27,32 @@ def through(log, filter=Filter(q=0.1), limit=np.inf):  # noqa: B008
     return walk(monitor(log, cubature(log, found, filter), branch), missions.rows(log))
 
 
-def off_m(told, mission) -> np.ndarray:
+def off_m(result, mission) -> np.ndarray:
     """How far the belief is from the truth at each tick [m]."""
     scale = np.array([6.367e6, 6.387e6 * np.cos(mission.truth.value[0, 0])])
-    return np.linalg.norm((told.states.residual.mean - mission.truth.value[:, :2]) * scale, axis=1)
+    return np.linalg.norm((result.states.residual.mean - mission.truth.value[:, :2]) * scale, axis=1)
 
 
 def test_innovations_are_as_large_as_it_says() -> None:
-    told = through(missions.healthy().log, Filter(q=0.1, adaptive=False))
+    result = through(missions.healthy().log, Filter(q=0.1, adaptive=False))
     for column in missions.RANGES:
-        valid = told.reports.residual.valid[:, column]
-        size = told.reports.residual.value[valid, column] / np.sqrt(told.reports.residual.cov[valid, column, column])
+        valid = result.reports.residual.valid[:, column]
+        size = result.reports.residual.value[valid, column] / np.sqrt(
+            result.reports.residual.cov[valid, column, column]
+        )
         assert valid.sum() > 150
         assert 0.85 < size.std() < 1.15
 
 
 def test_it_knows_where_it_is() -> None:
     mission = missions.healthy()
-    told = through(mission.log)
-    assert np.percentile(off_m(told, mission)[60:], 95) < 5.0
+    result = through(mission.log)
+    assert np.percentile(off_m(result, mission)[60:], 95) < 5.0
 
 
 def test_a_surprise_weighs_less() -> None:
     """(30), (31): R* = R max(1, r² / P_zz), each range by itself."""
-    log = inject(missions.healthy().log, [Fault("bias", "leader1", "range", 500.0, 30.0, 40.0)]).log
+    log = inject(missions.healthy().log, [Fault("offset", "leader1", "range", 500.0, 30.0, 40.0)]).log
     residual = through(log).reports.residual
     column = missions.RANGES[0]
     valid = residual.valid[:, column]
@@ -61,7 +63,7 @@ def test_a_surprise_weighs_less() -> None:
 
 def test_an_exact_repeat_is_no_news() -> None:
     mission = missions.healthy()
-    log = inject(mission.log, [Fault("jam", "leader1", "range", 500.0, 120.0)]).log
+    log = inject(mission.log, [Fault("frozen", "leader1", "range", 500.0, 120.0)]).log
     fooled, wise = (off_m(through(log, Filter(q=0.1, repeated=times)), mission) for times in (1.0, 1e6))
     alone = off_m(through(mission.log), mission)
     during = slice(500, 640)
@@ -87,20 +89,20 @@ def test_without_a_heading_the_way_is_unknown() -> None:
     value, fresh = log.value.copy(), log.fresh.copy()
     hidden = (slice(300, 400), [4, 6, 7, 8, 9, 10, 11, 12, 13])
     value[hidden], fresh[hidden] = np.nan, False
-    told = through(replace(log, value=value, fresh=fresh))
-    spread = 6.367e6 * np.sqrt((told.states.residual.root[:, 0] ** 2).sum(axis=1))
+    result = through(replace(log, value=value, fresh=fresh))
+    spread = 6.367e6 * np.sqrt((result.states.residual.root[:, 0] ** 2).sum(axis=1))
     assert spread[399] == pytest.approx(spread[301] + 2.0 * 98, rel=0.02)
-    assert off_m(told, missions.healthy())[440:].max() < 25.0
+    assert off_m(result, missions.healthy())[440:].max() < 25.0
 
 
 def test_nothing_is_told_before_a_first_fix() -> None:
     log = missions.healthy().log
     value, fresh = log.value.copy(), log.fresh.copy()
     value[:200, :2], fresh[:200, :2] = np.nan, False
-    told = through(replace(log, value=value, fresh=fresh), limit=0.0)
-    assert not told.reports.residual.valid[:200].any()
-    assert not (told.channel[:200] == FAULT).any()
-    assert told.reports.residual.valid[201:, missions.RANGES[0]].any()
+    result = through(replace(log, value=value, fresh=fresh), limit=0.0)
+    assert not result.reports.residual.valid[:200].any()
+    assert not (result.channel[:200] == FAULT).any()
+    assert result.reports.residual.valid[201:, missions.RANGES[0]].any()
 
 
 @pytest.mark.parametrize("noise", [SageHusa(jnp.asarray(0.98)), WindowedNoise(50)])

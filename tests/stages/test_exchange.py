@@ -43,9 +43,9 @@ def test_the_largest_share_would_have_named_an_innocent() -> None:
 
 def test_a_second_fault_is_left_over_and_not_cleared() -> None:
     rows = script(np.zeros((1, 1)), [[5.0, 0, 4.0]])
-    told = walk(smearing(Exchange), rows)
-    assert told.channel[0, 0] == FAULT
-    assert told.channel[0, 2] != OK
+    result = walk(smearing(Exchange), rows)
+    assert result.channel[0, 0] == FAULT
+    assert result.channel[0, 2] != OK
 
 
 def test_alone_or_together() -> None:

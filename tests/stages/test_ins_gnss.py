@@ -47,7 +47,7 @@ def judge(bank: bool = False) -> Monitor:
     return monitor(how(), navigation(how(), Filter(bank=bank)), limit)
 
 
-def told(log: Log, bank: bool = False) -> Walk:
+def result(log: Log, bank: bool = False) -> Walk:
     return walk(judge(bank), samples(log.time, log.value, log.fresh, log.block))
 
 
@@ -77,7 +77,7 @@ def lying(by: float, span: slice, satellites: slice | int = SATELLITE) -> Log:
 
 
 def test_from_nothing_to_navigating() -> None:
-    run = told(epochs())
+    run = result(epochs())
     phase = run.states.residual.phase
     assert (np.diff(phase) >= 0).all()
     assert phase[2] == MOVING
@@ -90,7 +90,7 @@ def test_from_nothing_to_navigating() -> None:
 @pytest.mark.parametrize("bank", [False, True])
 def test_a_jump_of_the_clock_accuses_nobody(bank: bool) -> None:
     jump = 299792.458
-    run, calm = told(lying(jump, slice(AT, None), slice(None)), bank), told(epochs(), bank)
+    run, calm = result(lying(jump, slice(AT, None), slice(None)), bank), result(epochs(), bank)
     assert not (run.channel == FAULT).any()
     assert run.channel[AT, SATELLITE] == OK
     clock = run.states.residual.own.clock - calm.states.residual.own.clock
@@ -100,7 +100,7 @@ def test_a_jump_of_the_clock_accuses_nobody(bank: bool) -> None:
 
 
 def test_through_a_tunnel_by_itself() -> None:
-    run = told(without(slice(AT, AT + 15)))
+    run = result(without(slice(AT, AT + 15)))
     assert (run.channel[AT : AT + 15] == UNKNOWN).all()
     assert off(run)[AT + 14] < 60.0
     assert not (run.channel == FAULT).any()
@@ -110,13 +110,13 @@ def test_through_a_tunnel_by_itself() -> None:
 def test_wheels_hold_it_in_a_tunnel() -> None:
     speed = np.linalg.norm(train().velocity, axis=1)[np.searchsorted(train().log.time, epochs().time - 1e-6)]
     silent = without(slice(AT, AT + 15))
-    run = told(replace(silent, block=silent.block._replace(ahead=speed)))
-    assert off(run)[AT + 14] < 0.5 * off(told(silent))[AT + 14]
+    run = result(replace(silent, block=silent.block._replace(ahead=speed)))
+    assert off(run)[AT + 14] < 0.5 * off(result(silent))[AT + 14]
     assert not (run.channel == FAULT).any()
 
 
 def test_satellites_come_and_go() -> None:
-    run = told(without(slice(AT, AT + 10), slice(0, 6)))
+    run = result(without(slice(AT, AT + 10), slice(0, 6)))
     assert (run.channel[AT : AT + 10, :6] == UNKNOWN).all()
     assert (run.channel[AT : AT + 10, 6:] == OK).all()
     assert (run.channel[AT + 10 :] == OK).all()
@@ -126,7 +126,7 @@ def test_satellites_come_and_go() -> None:
 
 
 def test_a_hole_in_the_inertial_rows_costs_doubt_alone() -> None:
-    run, calm = told(blind(slice(AT, AT + 1))), told(epochs())
+    run, calm = result(blind(slice(AT, AT + 1))), result(epochs())
     assert finite(run.states)
     assert not (run.channel == FAULT).any()
     wide, usual = (np.einsum("tii->t", r.states.residual.cov[:, 3:6, 3:6]) for r in (run, calm))
@@ -136,14 +136,14 @@ def test_a_hole_in_the_inertial_rows_costs_doubt_alone() -> None:
 
 
 def test_without_any_inertial_row_it_follows_position_and_velocity() -> None:
-    run = told(blind(slice(None)))
+    run = result(blind(slice(None)))
     assert (run.states.residual.phase[5:] == MOVING).all()
     assert not (run.channel == FAULT).any()
     assert np.median(off(run)[20:]) < 6.0
 
 
 def test_who_lies_is_named_and_not_taken_in() -> None:
-    run, calm = told(lying(100.0, slice(AT, AT + 10))), told(epochs())
+    run, calm = result(lying(100.0, slice(AT, AT + 10))), result(epochs())
     assert (run.channel[AT : AT + 10] == FAULT).any(axis=0).tolist() == [i == SATELLITE for i in range(10)]
     assert (run.channel[AT : AT + 10, SATELLITE] == FAULT).all()
     assert (run.channel[AT + 10 :] == OK).all()
@@ -155,7 +155,7 @@ def test_a_filter_that_is_wrong_comes_back_after_refusing() -> None:
     spread = np.where(np.arange(10) % 2, 200.0, -200.0) * np.arange(10)
     value = epochs().value.copy()
     value[AT : AT + 8] += spread
-    run = told(replace(epochs(), value=value))
+    run = result(replace(epochs(), value=value))
     assert run.states.residual.refused[AT : AT + 8].any()
     assert (run.channel[-10:] == OK).mean() > 0.9
     assert off(run)[-10:].max() < 10.0
@@ -163,7 +163,7 @@ def test_a_filter_that_is_wrong_comes_back_after_refusing() -> None:
 
 @pytest.mark.parametrize("far", [2e5, -2e5])
 def test_a_filter_that_has_run_away_begins_anew(far: float) -> None:
-    run = told(epochs())
+    run = result(epochs())
     state = jax.tree.map(lambda x: x[AT], run.states)
     nav = state.residual.nav
     away = nav.position * (1 + far / np.linalg.norm(nav.position))
@@ -187,7 +187,11 @@ def test_left_out_late_the_bank_forgets_what_the_liar_told() -> None:
     value[AT - 10 :, SATELLITE] += 3.0 * np.arange(len(value) - AT + 10)
     log = replace(epochs(), value=value)
     span = slice(AT - 10, None)
-    with_bank, plain, never = told(log, True), told(log), told(without(span, slice(SATELLITE, SATELLITE + 1)), True)
+    with_bank, plain, never = (
+        result(log, True),
+        result(log),
+        result(without(span, slice(SATELLITE, SATELLITE + 1)), True),
+    )
     first = int(np.flatnonzero(with_bank.channel[:, SATELLITE] == FAULT)[0])
     accused = (with_bank.channel == FAULT).any(axis=0)
     assert accused.tolist() == [i == SATELLITE for i in range(10)]
@@ -212,10 +216,10 @@ def test_nobody_is_excluded_once_those_left_tell_no_position() -> None:
     few = without(slice(AT, None), slice(4, None))
     value = few.value.copy()
     value[AT, SATELLITE] += 100.0
-    run = told(replace(few, value=value))
+    run = result(replace(few, value=value))
     assert run.channel[AT, SATELLITE] == UNKNOWN
     assert not (run.channel[AT] == FAULT).any()
     more = without(slice(AT, None), slice(5, None))
     value = more.value.copy()
     value[AT, SATELLITE] += 100.0
-    assert told(replace(more, value=value)).channel[AT, SATELLITE] == FAULT
+    assert result(replace(more, value=value)).channel[AT, SATELLITE] == FAULT

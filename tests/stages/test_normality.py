@@ -61,40 +61,40 @@ def expected(u: np.ndarray, sigma: float = 1.0) -> list[float]:
 @pytest.mark.parametrize("offset", [0.0, 20.0])
 def test_windows_are_as_scipy_says(offset: float) -> None:
     value = np.random.default_rng(0).gamma(3.0, size=3000) + offset
-    told = run(statistic(), value)
+    result = run(statistic(), value)
     for k in (100, 499, 500, 1234, 2999):
-        np.testing.assert_allclose(told[k], expected(value[in_window(k)] / 2), rtol=1e-6)
+        np.testing.assert_allclose(result[k], expected(value[in_window(k)] / 2), rtol=1e-6)
 
 
 def test_decimated_and_whitened() -> None:
     """Each fifth valid sample, less half of the one before; the holes do not count."""
     rng = np.random.default_rng(1)
     value, valid = rng.standard_normal(3000), rng.uniform(size=3000) < 0.5
-    told = run(statistic(5, 0.5, 0.7), np.where(valid, value, np.nan), valid)
+    result = run(statistic(5, 0.5, 0.7), np.where(valid, value, np.nan), valid)
     rows = np.flatnonzero(valid)[::5]
     u = (value[rows[1:]] / 2 - 0.5 * value[rows[:-1]] / 2) / np.sqrt(0.75)
     for k in (1500, 2500, 2999):
         k = int(np.flatnonzero(valid[: k + 1])[-1])
         span = in_window(k)
         mine = u[(rows[1:] >= span.start) & (rows[1:] <= k)]
-        np.testing.assert_allclose(told[k], expected(mine, 0.7), rtol=1e-8)
-    assert np.isnan(told[~valid]).all()
+        np.testing.assert_allclose(result[k], expected(mine, 0.7), rtol=1e-8)
+    assert np.isnan(result[~valid]).all()
 
 
 def test_an_hour_costs_no_digits() -> None:
     rng = np.random.default_rng(2)
     value = rng.standard_normal(round(3600 * HZ)) + 20.0
     value[1000:2000] = 1e9  # long gone
-    told = run(statistic(), value)
-    np.testing.assert_allclose(told[-1], expected(value[in_window(len(value) - 1)] / 2), rtol=1e-6)
+    result = run(statistic(), value)
+    np.testing.assert_allclose(result[-1], expected(value[in_window(len(value) - 1)] / 2), rtol=1e-6)
 
 
 def test_a_hole_in_the_clock_empties_the_window() -> None:
     value = np.random.default_rng(3).standard_normal(1000)
     time = np.arange(1000) / HZ
-    told = run(statistic(), value, time=time + np.where(time > 10, 5.0, 0.0))
-    assert np.isnan(told[501:509]).all()
-    np.testing.assert_allclose(told[515], expected(value[502:516] / 2), rtol=1e-8)
+    result = run(statistic(), value, time=time + np.where(time > 10, 5.0, 0.0))
+    assert np.isnan(result[501:509]).all()
+    np.testing.assert_allclose(result[515], expected(value[502:516] / 2), rtol=1e-8)
 
 
 def test_blind_to_bias_and_scale_but_its_companions_are_not() -> None:

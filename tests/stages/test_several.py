@@ -14,7 +14,7 @@ from sensorfault.core.types import FAULT, Sample
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.several import Several
-from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.statistic.select_residual import SelectResidual
 from sensorfault.stages.threshold.fixed import Fixed
 
 CHANNELS = 3
@@ -45,7 +45,7 @@ def rows() -> Sample:
 def test_each_part_is_as_if_alone(rows: Sample, alone: int) -> None:
     answers = np.zeros((2, CHANNELS), bool)
     answers[alone] = True
-    together = walk(monitor(two(answers), Of(Normalized(), alone)), rows)
+    together = walk(monitor(two(answers), SelectResidual(Normalized(), alone)), rows)
     single = walk(monitor(two(answers).parts[alone], Normalized()), rows)
     assert (together.channel[80:90, 1] == FAULT).any()
     assert_close(together.reports.verdict, single.reports.verdict)
@@ -54,28 +54,32 @@ def test_each_part_is_as_if_alone(rows: Sample, alone: int) -> None:
 
 
 def test_each_channel_is_answered_for_by_its_part(rows: Sample) -> None:
-    told = walk(monitor(two([[True, False, False], [False, True, False]]), Of(Normalized(), 0)), rows).reports.residual
-    calm, quick = told.extra
-    np.testing.assert_array_equal(told.value, np.stack([calm.value[:, 0], quick.value[:, 1], 0 * calm.value[:, 2]], 1))
+    result = walk(
+        monitor(two([[True, False, False], [False, True, False]]), SelectResidual(Normalized(), 0)), rows
+    ).reports.residual
+    calm, quick = result.extra
     np.testing.assert_array_equal(
-        told.valid, np.stack([calm.valid[:, 0], quick.valid[:, 1], calm.valid[:, 2] & False], 1)
+        result.value, np.stack([calm.value[:, 0], quick.value[:, 1], 0 * calm.value[:, 2]], 1)
     )
-    assert (told.cov[:, 0, 1] == 0).all()
-    np.testing.assert_array_equal(told.cov[:, 1, 1], quick.cov[:, 1, 1])
+    np.testing.assert_array_equal(
+        result.valid, np.stack([calm.valid[:, 0], quick.valid[:, 1], calm.valid[:, 2] & False], 1)
+    )
+    assert (result.cov[:, 0, 1] == 0).all()
+    np.testing.assert_array_equal(result.cov[:, 1, 1], quick.cov[:, 1, 1])
 
 
 def test_what_is_taken_out_is_out_of_every_part(rows: Sample) -> None:
     """The second part's test is judged again without the channel that the first accused."""
-    both = monitor(two([[True] * 3, [False] * 3]), Of(Normalized(), 0), Of(Normalized(), 1))
-    told = walk(both, rows)
-    assert (told.channel[80:90, [0, 2]] != FAULT).all()
-    assert (told.channel[80, 1] == FAULT).all()
+    both = monitor(two([[True] * 3, [False] * 3]), SelectResidual(Normalized(), 0), SelectResidual(Normalized(), 1))
+    result = walk(both, rows)
+    assert (result.channel[80:90, [0, 2]] != FAULT).all()
+    assert (result.channel[80, 1] == FAULT).all()
 
 
 def test_a_part_that_is_lost_does_not_take_the_others_along(rows: Sample) -> None:
     whole = two([[True] * 3, [False] * 3])
     lost = eqx.tree_at(lambda residual: residual.parts[1].r, whole, jnp.full(CHANNELS, jnp.nan))
-    told = walk(monitor(lost, Of(Normalized(), 0)), rows)
+    result = walk(monitor(lost, SelectResidual(Normalized(), 0)), rows)
     single = walk(monitor(whole.parts[0], Normalized()), rows)
-    assert_close(told.reports.verdict, single.reports.verdict)
-    assert finite(told.states)
+    assert_close(result.reports.verdict, single.reports.verdict)
+    assert finite(result.states)

@@ -33,7 +33,7 @@ def fitted(folder: Path) -> tuple[Model, Log]:
     return recipe("car").build(log.between(end_s=cut), 0, Session()), log.between(cut)
 
 
-def told(folder: Path, *faults: Fault) -> list[Event]:
+def result(folder: Path, *faults: Fault) -> list[Event]:
     """Events between the first fault's onset and a second after its end."""
     model, rest = fitted(folder)
     found = detect(model, inject(rest, faults).log).events
@@ -56,7 +56,7 @@ def rate(times: np.ndarray) -> float:
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_nothing_is_said_of_a_healthy_drive(folder: str, real_data: Path) -> None:
     model, rest = fitted(real_data / folder)
-    events = [event for event in detect(model, rest).events if event.kind != "miss" or event.end_s is not None]
+    events = [event for event in detect(model, rest).events if event.kind != "missing" or event.end_s is not None]
     assert events == []  # the inertial unit of drive 0708 outlives the last fix: that silence is so
 
 
@@ -65,8 +65,8 @@ def test_an_offset_of_15_m_is_found(folder: str, real_data: Path) -> None:
     _, rest = fitted(real_data / folder)
     right = []
     for seed, start in enumerate(np.linspace(rest.time[0] + 10, rest.time[-1] - 30, TRIALS)):
-        whole = Fault("bias", rest.channels[rest.index("latitude")].sensor, None, float(start), 20.0, METRES)
-        events = told(real_data / folder, *study._parts(whole, rest, seed))
+        whole = Fault("offset", rest.channels[rest.index("latitude")].sensor, None, float(start), 20.0, METRES)
+        events = result(real_data / folder, *study._parts(whole, rest, seed))
         right.append(bool(events) and events[0].sensor == whole.sensor)
     assert np.mean(right) >= 0.95
 
@@ -76,9 +76,9 @@ def test_every_silence_is_laid_to_its_sensor(folder: str, real_data: Path) -> No
     _, rest = fitted(real_data / folder)
     for sensor in rest.sensors:
         for silence_s in (4.5 * sensor.period_s, 10.0):
-            miss = Fault("miss", sensor.name, None, float(rest.time[0]) + 20.0, silence_s)
-            events = told(real_data / folder, miss)
-            assert ("miss", sensor.name) in {(event.kind, event.sensor) for event in events}, miss
+            miss = Fault("missing", sensor.name, None, float(rest.time[0]) + 20.0, silence_s)
+            events = result(real_data / folder, miss)
+            assert ("missing", sensor.name) in {(event.kind, event.sensor) for event in events}, miss
             assert silence_s > MISSED * sensor.period_s
 
 
@@ -87,15 +87,15 @@ def test_all_four_kinds_are_found_and_named(folder: str, real_data: Path) -> Non
     _, rest = fitted(real_data / folder)
     start = under_way(rest, 6.0, 1)[0]
     receiver = rest.channels[rest.index("latitude")].sensor
-    offset = Fault("bias", receiver, None, start, 5.0, METRES)
+    offset = Fault("offset", receiver, None, start, 5.0, METRES)
     wanted = (
-        [Fault("short", "gyro", "z", start, 0.0, 10.0, sigmas=True)],
-        [Fault("jam", "gyro", "z", start, 4.0)],
-        [Fault("miss", "gyro", None, start, 4.0)],
+        [Fault("spike", "gyro", "z", start, 0.0, 10.0, sigmas=True)],
+        [Fault("frozen", "gyro", "z", start, 4.0)],
+        [Fault("missing", "gyro", None, start, 4.0)],
         study._parts(offset, rest, 0),
-        [replace(offset, kind="jam", channel=name, duration_s=4.0) for name in ("latitude", "longitude")],
+        [replace(offset, kind="frozen", channel=name, duration_s=4.0) for name in ("latitude", "longitude")],
     )
     for faults in wanted:
-        events = told(real_data / folder, *faults)
+        events = result(real_data / folder, *faults)
         named = [(event.sensor, event.kind) for event in events]
         assert (faults[0].sensor, faults[0].kind) in named, (faults[0], named)

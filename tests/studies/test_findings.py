@@ -20,7 +20,7 @@ from sensorfault_studies.min2021 import study as min2021
 from sensorfault_studies.page import page
 from sensorfault_studies.tables import PAPER, Cell, ours, printed, tables, thinned
 
-ONE = Row("A1", "dresden", "injected", "L32", "pca", "short", 1.0, "auc", 0.8412, 0.0123, 5, 0.9)
+ONE = Row("A1", "dresden", "injected", "L32", "pca", "spike", 1.0, "auc", 0.8412, 0.0123, 5, 0.9)
 
 
 def sweep() -> tuple[Row, ...]:
@@ -93,12 +93,12 @@ def test_magnitudes_stand_across_and_methods_below_each_other() -> None:
     assert [labels[:3] for labels, _ in table.rows[:4]] == [
         ("dresden", "auc", "pca"), ("dresden", "auc", "elm"), ("dresden", "f1", "pca"), ("dresden", "f1", "elm"),
     ]  # fmt: skip
-    told = {
+    result = {
         (*labels[:3], float(head)): float(number.value)
         for labels, cells in table.rows
         for head, number in zip(table.heads, cells, strict=True)
     }
-    assert told == {(row.data, row.metric, row.method, row.magnitude): row.value for row in sweep()}
+    assert result == {(row.data, row.metric, row.method, row.magnitude): row.value for row in sweep()}
 
 
 def test_what_was_measured_once_has_metrics_across() -> None:
@@ -127,7 +127,7 @@ def test_what_has_no_metric_in_common_stands_apart() -> None:
 
 
 def test_many_magnitudes_go_down() -> None:
-    rows = [replace(ONE, fault="bias", magnitude=size / 7, value=100.0 + size) for size in range(1, 14)]
+    rows = [replace(ONE, fault="offset", magnitude=size / 7, value=100.0 + size) for size in range(1, 14)]
     rows = [replace(row, paper=None) for row in rows]
     (table,) = tables(rows)
     assert table.labels == ("data", "magnitude", "method", "condition")
@@ -136,7 +136,7 @@ def test_many_magnitudes_go_down() -> None:
 
 
 def test_no_number_is_lost_whatever_the_rows_are() -> None:
-    kinds = ("short", "jam", "bias", None)
+    kinds = ("spike", "frozen", "offset", None)
     rows = [
         replace(ONE, fault=fault, magnitude=size, source=source, condition=condition, value=100.0 + i, spread=None)
         for i, (fault, size, source, condition) in enumerate(
@@ -147,14 +147,14 @@ def test_no_number_is_lost_whatever_the_rows_are() -> None:
             for condition in ("", "far1e-2")
         )
     ]
-    told = sorted(
+    result = sorted(
         int(c.value)
         for table in tables(rows)
         for _, cells in table.rows
         for head, c in zip(table.heads, cells, strict=True)
         if c.value and head != PAPER
     )
-    assert told == [int(row.value) for row in rows]
+    assert result == [int(row.value) for row in rows]
 
 
 def test_labels_are_not_repeated() -> None:
@@ -270,7 +270,7 @@ def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.Mon
     for folder in min2021.DATA:
         (tmp_path / folder).mkdir(parents=True)
     monkeypatch.setenv("SENSORFAULT_DATA", str(tmp_path))
-    told: list[tuple[str, float]] = []
+    result: list[tuple[str, float]] = []
 
     def experiment(code: str) -> Callable[[Effort], Findings]:
         def run(effort: Effort) -> Findings:
@@ -281,20 +281,20 @@ def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.Mon
 
     assert list(min2021.EXPERIMENTS) == list(STUDIES["min2021"].experiments) == ["A1", "A2", "A3", "A4"]
     monkeypatch.setattr(min2021, "EXPERIMENTS", {code: experiment(code) for code in ("A1", "A2")})
-    findings = STUDIES["min2021"].run(Effort(7, tell=lambda doing, share: told.append((doing, share))))
+    findings = STUDIES["min2021"].run(Effort(7, tell=lambda doing, share: result.append((doing, share))))
     assert [(row.experiment, row.seeds) for row in findings.rows] == [("A1", 7), ("A2", 7)]
     assert [figure.name for figure in findings.figures] == ["a1-f", "a2-f"]
     assert findings.remarks == ("A1", "A2")
-    assert told == [("A1 going", 0.25), ("A2 going", 0.75)]
+    assert result == [("A1 going", 0.25), ("A2 going", 0.75)]
 
 
 def test_an_experiments_progress_is_a_part_of_the_studys() -> None:
-    told: list[tuple[str, float]] = []
-    tell = min2021._part(lambda doing, share: told.append((doing, share)), "A3", 2, 4)
+    result: list[tuple[str, float]] = []
+    tell = min2021._part(lambda doing, share: result.append((doing, share)), "A3", 2, 4)
     tell("fitting", 0.0)
     tell("fitting", 0.5)
     tell("A3 judging", 7.0)
-    assert told == [("A3 fitting", 0.5), ("A3 fitting", 0.625), ("A3 judging", 0.75)]
+    assert result == [("A3 fitting", 0.5), ("A3 fitting", 0.625), ("A3 judging", 0.75)]
 
 
 def test_figures_are_filed_under_their_experiment() -> None:

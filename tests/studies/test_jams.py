@@ -37,7 +37,7 @@ def test_jams_are_found_and_the_untouched_rest_is_quiet(name: str) -> None:
     drive, model = fitted(name)
     healthy = detect(model, drive.rest)
     assert not (healthy.channel == FAULT).any()
-    assert not [event for event in healthy.events if event.kind != "miss"]
+    assert not [event for event in healthy.events if event.kind != "missing"]
     for length_s, least in LEAST[name].items():
         for seed in SEEDS:
             copy = jammed(drive, length_s, seed)

@@ -97,9 +97,9 @@ def test_a_vehicle_of_many_is_itself() -> None:
     ramps = Ramps.on(cut().judge, (0.5,))
     together = watch(climbing().monitors(np.ones(2), closed=True), ramps.logs)
     alone = climbing()._monitor(1, 1.0, True)
-    told = replay_log(alone, ramps.logs[2])
-    np.testing.assert_array_equal(together.alarm[1, 2], np.asarray(told.channel)[:, 0] == 2)
-    np.testing.assert_allclose(together.limit[1, 2], np.asarray(told.limits[0])[:, 0], rtol=1e-12)
+    result = replay_log(alone, ramps.logs[2])
+    np.testing.assert_array_equal(together.alarm[1, 2], np.asarray(result.channel)[:, 0] == 2)
+    np.testing.assert_allclose(together.limit[1, 2], np.asarray(result.limits[0])[:, 0], rtol=1e-12)
 
 
 def test_what_is_told_of_a_flight(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -112,9 +112,9 @@ def test_what_is_told_of_a_flight(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "network", stand_in)
     monkeypatch.setattr(study, "QUICK_LONG", study.QUICK_STEPS)
     shares: list[float] = []
-    (told,) = drifts(Effort(seeds=1, quick=True, tell=lambda doing, share: shares.append(share)))
+    (result,) = drifts(Effort(seeds=1, quick=True, tell=lambda doing, share: shares.append(share)))
     assert shares == sorted(shares)
-    rows = list(rows_of(told))
+    rows = list(rows_of(result))
     assert len({(r.condition, r.method, r.fault, r.magnitude, r.metric, r.source) for r in rows}) == len(rows)
     found = {(r.method, r.condition, r.metric, r.magnitude): r for r in rows}
     assert found[NETWORK, "as-printed N1", "delay_steps", None].paper == 134
@@ -125,7 +125,7 @@ def test_what_is_told_of_a_flight(monkeypatch: pytest.MonkeyPatch) -> None:
     rates = [found[KINEMATIC, f"matched1e-2 N{n}", "detection_rate", None].value for n in (1, 10, 12)]
     assert rates == sorted(rates)
     assert all(row.source == ("injected" if row.fault else "real") for row in rows)
-    names = [figure.name for figure in of_drift(told)]
+    names = [figure.name for figure in of_drift(result)]
     assert names == [
         "d_training_proto", "d_residual_n1_proto", "d_residual_n10_proto",
         *(f"d_sweep_{method}_{condition}_proto" for method, condition in (

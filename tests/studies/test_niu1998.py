@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.faults.fault import KINDS
 from sensorfault.logs.table import LogError
 from sensorfault.methods.catalog import METHODS
 from sensorfault.runtime.model import Model
@@ -20,7 +21,7 @@ from sensorfault_studies.findings import Effort
 from sensorfault_studies.niu1998 import drifts as study
 from sensorfault_studies.niu1998.drifts import drifts, smallest
 from sensorfault_studies.niu1998.figures import of_slow_drifts, of_the_run
-from sensorfault_studies.niu1998.fleet import BATCH, Told, watch, with_limits
+from sensorfault_studies.niu1998.fleet import BATCH, Result, watch, with_limits
 from sensorfault_studies.niu1998.isolation import (
     LASTING,
     ONSET,
@@ -45,25 +46,25 @@ def persistence() -> Model:
     return METHODS["persistence"].build(joined([run(seed=s) for s in (90, 91)]), 0, SILENT)
 
 
-def of(verdicts: np.ndarray) -> Told:
+def of(verdicts: np.ndarray) -> Result:
     nothing = np.zeros(verdicts.shape)
-    return Told(verdicts.astype(np.int8), nothing, nothing[0, 0], nothing, nothing)
+    return Result(verdicts.astype(np.int8), nothing, nothing[0, 0], nothing, nothing)
 
 
 def test_a_fleet_says_what_a_replay_says() -> None:
     logs = [run(seed=seed) for seed in range(BATCH + 2)]
     limit = np.array([0.01, 0.01, 0.02, 0.02, np.inf, np.inf])
     model = with_limits(persistence(), limit)
-    told = watch(model, logs)
-    assert told.channel.shape == (BATCH + 2, 100, 6)
-    np.testing.assert_array_equal(told.limit, limit)
+    result = watch(model, logs)
+    assert result.channel.shape == (BATCH + 2, 100, 6)
+    np.testing.assert_array_equal(result.limit, limit)
     for i in (0, BATCH + 1):
         one = replay_log(model.monitor, logs[i])
-        np.testing.assert_array_equal(told.channel[i], one.channel)
-        np.testing.assert_allclose(told.residual[i], one.residual, atol=1e-12)
-    assert told.fault[:, :, :4].any()
-    assert not told.fault[:, :, 4:].any()
-    assert not told.tested[:, 0].any()
+        np.testing.assert_array_equal(result.channel[i], one.channel)
+        np.testing.assert_allclose(result.residual[i], one.residual, atol=1e-12)
+    assert result.fault[:, :, :4].any()
+    assert not result.fault[:, :, 4:].any()
+    assert not result.tested[:, 0].any()
 
 
 def test_thresholds_are_the_papers_rule() -> None:
@@ -89,11 +90,11 @@ def test_when_drifts_are_found() -> None:
     verdicts[1, 51:, 1] = verdicts[1, 53:, 3] = FAULT
     verdicts[2, 50:, 1] = verdicts[2, 51:, 3] = FAULT
     verdicts[3, 49, 0] = FAULT
-    told = of(verdicts)
-    assert first(told, 1).tolist() == [51, 51, 50, 100]
-    assert first(told, 3).tolist() == [52, 53, 51, 100]
-    assert found_soon(told).tolist() == [True, False, False, False]
-    assert early(told).tolist() == [False, False, False, True]
+    result = of(verdicts)
+    assert first(result, 1).tolist() == [51, 51, 50, 100]
+    assert first(result, 3).tolist() == [52, 53, 51, 100]
+    assert found_soon(result).tolist() == [True, False, False, False]
+    assert early(result).tolist() == [False, False, False, True]
 
 
 def test_the_smallest_drift_has_no_hole_above_it() -> None:
@@ -123,8 +124,8 @@ def test_what_is_told_of_the_papers_run(monkeypatch: pytest.MonkeyPatch) -> None
     rivals = (Rival(NETWORK, "", build), Rival(NETWORK, SCRATCH, build))
     monkeypatch.setattr(study, "of_two_links", lambda arm, limits: rivals)
     shares: list[float] = []
-    told = drifts(Effort(seeds=1, quick=True, tell=lambda doing, share: shares.append(share)))
-    rows = list(told.rows())
+    result = drifts(Effort(seeds=1, quick=True, tell=lambda doing, share: shares.append(share)))
+    rows = list(result.rows())
     assert len({(r.condition, r.method, r.fault, r.magnitude, r.metric) for r in rows}) == len(rows)
     assert shares == sorted(shares)
     found = {(r.condition, r.metric, r.magnitude): r for r in rows}
@@ -136,7 +137,7 @@ def test_what_is_told_of_the_papers_run(monkeypatch: pytest.MonkeyPatch) -> None
     assert found["as-printed far5e-2 y2", "detection_rate", 2.0].value > 0.9
     assert found["as-printed far5e-2 y2", "detection_rate", 0.1].value < 0.2
     assert found["as-printed noise-free", "rms", None].value < found["as-printed", "rms", None].value
-    figures = (*of_the_run(told), *of_slow_drifts(rows))
+    figures = (*of_the_run(result), *of_slow_drifts(rows))
     assert [figure.name for figure in figures] == [
         "b_prediction_y2", "b_residual_y2", "b_prediction_y4", "b_residual_y4", "b_slow_y2", "b_slow_y4",
     ]  # fmt: skip
@@ -216,7 +217,7 @@ def test_faults_are_as_large_as_asked() -> None:
     clean = {log.value[:, :SENSORS].tobytes(): log for log in healthy}
     unit = np.where(np.arange(18) < 6, 2e-3, 1e-3)
     found = trials(healthy, unit, 2, 0, quick=False)
-    assert {trial.kind for trial in found} == {"short", "bias", "drift", "noise", "jam", "scale", "delay", "miss"}
+    assert {trial.kind for trial in found} == set(KINDS)
     before = np.array([log.value[:ONSET, :SENSORS] for log in clean.values()])
     for trial in found:
         (i,) = np.flatnonzero((before == trial.log.value[:ONSET, :SENSORS]).all(axis=(1, 2)))
@@ -226,11 +227,11 @@ def test_faults_are_as_large_as_asked() -> None:
         assert changed[:, 0].min() in (ONSET, ONSET + 1)
         assert changed[:, 0].max() < ONSET + LASTING
         size = trial.size * unit[trial.column]
-        if trial.kind in ("short", "bias"):
+        if trial.kind in ("spike", "offset"):
             np.testing.assert_allclose(np.abs(change[change != 0]), size)
         if trial.kind == "drift":
             assert abs(change[ONSET + 1, trial.column]) == pytest.approx(size)
-        if trial.kind == "jam":
+        if trial.kind == "frozen":
             assert abs(change[ONSET, trial.column]) >= 5 * unit[trial.column]
 
 
@@ -270,11 +271,11 @@ def test_both_drifts_are_found_at_once_by_the_network(variant: str) -> None:
     network = next(rival for rival in rivals if (rival.method, rival.variant) == (NETWORK, variant))
     watched = replace(Watched.of(network, AS_PRINTED, 0), seeds=range(200))
     model = with_limits(watched.model, limit)
-    told = watch(model, watched.drifting({"tachometer2": 2 * float(limit[1]), "encoder2": 2 * float(limit[3])}))
-    assert found_soon(told).mean() >= 0.95
-    assert early(told).mean() <= 0.05
-    assert increment_error(watch(watched.deaf, watched.healthy())) <= 0.007
-    assert increment_error(watch(watched.deaf, watched.healthy(0.0))) <= 0.003
+    result = watch(model, watched.drifting({"tachometer2": 2 * float(limit[1]), "encoder2": 2 * float(limit[3])}))
+    assert found_soon(result).mean() >= 0.95
+    assert early(result).mean() <= 0.05
+    assert increment_error(watch(watched.uncalibrated, watched.healthy())) <= 0.007
+    assert increment_error(watch(watched.uncalibrated, watched.healthy(0.0))) <= 0.003
 
 
 @pytest.mark.real
@@ -286,12 +287,12 @@ def test_isolation_on_the_real_arm(real_data: Path) -> None:
     network, *_ = of_six_joints(APART)
     own = Calibrated.of(network.build(joined(parts.learned), 0), stretches(parts.other))
     faults = trials(stretches(parts.judged), own.unit, 8, 0, quick=True)
-    faults = [trial for trial in faults if trial.kind in ("short", "bias", "jam")]
+    faults = [trial for trial in faults if trial.kind in ("spike", "offset", "frozen")]
     kinds = np.array([trial.kind for trial in faults])
-    told = watch(with_limits(own.deaf, own.limits["far1e-2"]), [trial.log for trial in faults])
-    became = isolated(told, np.array([trial.column for trial in faults]))
+    result = watch(with_limits(own.uncalibrated, own.limits["far1e-2"]), [trial.log for trial in faults])
+    became = isolated(result, np.array([trial.column for trial in faults]))
     assert became.calm.mean() > 0.5
-    right = {kind: became.right[became.calm & (kinds == kind)].mean() for kind in ("short", "bias", "jam")}
+    right = {kind: became.right[became.calm & (kinds == kind)].mean() for kind in ("spike", "offset", "frozen")}
     assert became.right[became.calm].mean() >= 0.95
     assert min(right.values()) >= 0.88, right
     assert KALMAN not in {rival.method for rival in of_six_joints(APART)}

@@ -36,9 +36,9 @@ def test_on_numbers_made_for_it() -> None:
     assert number(rows, condition="ar0.9", metric="far") >= 0.35
     assert number(rows, condition="ar0.9 x10", metric="far") <= 0.08
     size = number(rows, condition="whole-window", fault=None)
-    for fault in ("bias", "scale"):
+    for fault in ("offset", "scale"):
         assert number(rows, fault=fault, method="jarque-bera") == pytest.approx(size, abs=1e-3)
-    assert number(rows, fault="bias", method="mean") > 0.99
+    assert number(rows, fault="offset", method="mean") > 0.99
     assert number(rows, fault="scale", method="variance") > 0.99
 
 
@@ -52,7 +52,7 @@ def drive(data: str):
 def test_a_bias_of_two_metres_is_found(data: str, real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
     rows = biases(drive(data), 20, (2.0,))
-    assert number(rows, condition="length instant", fault="bias", metric="detection_rate") >= 0.95
+    assert number(rows, condition="length instant", fault="offset", metric="detection_rate") >= 0.95
     assert number(rows, condition="length instant", metric="far") <= 1e-3
     assert number(rows, condition="length instant", metric="chance") <= 0.1
 

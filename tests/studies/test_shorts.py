@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sklearn.metrics import roc_auc_score
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.methods.inertial.reconstructed import reconstructed
 from sensorfault.simulation.road import drive
 from sensorfault.training.elm import fit_elm
@@ -64,7 +64,7 @@ def test_scores_are_the_methods_own() -> None:
     x = (log.value - np.asarray(found.center)) / np.asarray(found.half)
     h = 1 / (1 + np.exp(-(x @ np.asarray(found.weights).T + np.asarray(found.bias))))
     want = np.linalg.norm(x - h @ np.asarray(found.output).T, axis=1)
-    np.testing.assert_allclose(judged_rows(deaf(model.monitor), log).score, want, rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(judged_rows(uncalibrated(model.monitor), log).score, want, rtol=1e-8, atol=1e-12)
 
 
 def test_recall_and_rate_are_counted_under_the_other_folds_limit() -> None:
@@ -190,10 +190,10 @@ def test_backpropagation_copies_better_and_so_sees_less(real_data: Path) -> None
 @pytest.mark.real
 def test_a_quick_look(real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
-    told: list[float] = []
-    found = study.shorts(Effort(quick=True, tell=lambda doing, share: told.append(share)))
+    result: list[float] = []
+    found = study.shorts(Effort(quick=True, tell=lambda doing, share: result.append(share)))
     assert {row.data for row in found.rows} == {"dresden_50hz", "drive0708"}
     assert {row.magnitude for row in found.rows} == {None, 3.0, 5.0}
     assert len(found.figures) == len(found.remarks) == 2
-    assert told == sorted(told)
-    assert 0 <= told[0] < told[-1] < 1
+    assert result == sorted(result)
+    assert 0 <= result[0] < result[-1] < 1

@@ -15,14 +15,14 @@ from sensorfault.runtime.detect import detect
 from sensorfault.simulation.flapping_wing import fly
 from sensorfault_studies.multistep.beats import Beats, compared
 from sensorfault_studies.multistep.flights import flight
-from sensorfault_studies.multistep.slow_judge import HALF, RATES, Told, judge
+from sensorfault_studies.multistep.slow_judge import HALF, RATES, Result, judge
 
 SHORT = replace(slope.TEST, setting=drift_setting.Setting(window_s=30.0))  # for logs that are short
 MUST = {"proto": (40.0, 20.0, 10.0), "thor": (110.0, 45.0, 25.0)}
 
 
-def judged(beats: Beats, test: drift_setting.DriftTest) -> Told:
-    return judge(beats, test, [test.setting])[0].told(HALF)
+def judged(beats: Beats, test: drift_setting.DriftTest) -> Result:
+    return judge(beats, test, [test.setting])[0].judge(HALF)
 
 
 @cache
@@ -37,27 +37,27 @@ def test_real_ramps_are_found_in_time_and_nothing_else_is(
     name: str, test: drift_setting.DriftTest, real_data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
-    told = judged(beats(name), test)
-    assert told.false == 0
-    assert not told.missed.any()
-    assert (told.delay.mean(axis=1) <= MUST[name]).all()
-    assert told.delay.shape[1] > 10
+    result = judged(beats(name), test)
+    assert result.false == 0
+    assert not result.missed.any()
+    assert (result.delay.mean(axis=1) <= MUST[name]).all()
+    assert result.delay.shape[1] > 10
 
 
 def test_a_ramp_on_beats_is_a_ramp_on_fixes() -> None:
     """The study lays a ramp on the beats' differences; the whole monitor, on the whole log, alarms at the same time."""
     whole = compared(fly(300.0, seed=11, imu_hz=10.0, gnss_hz=5.0, barometer_hz=10.0, beat_hz=0.0).log)
     short = Beats.of("slope", whole, SHORT.setting)
-    told = judged(short, SHORT)
+    result = judged(short, SHORT)
     model = drifting.drift(whole.between(end_s=short.half), SHORT)
-    assert told.limit == pytest.approx(model.summary["limit"], rel=1e-6)
+    assert result.limit == pytest.approx(model.summary["limit"], rel=1e-6)
     onset = short.half + 5.0
     for i, rate in enumerate(RATES):
         wrong = inject(whole, [Fault("drift", "gnss", "altitude", onset, 200.0, rate)]).log
-        events = [e for e in detect(model, wrong).events if e.start_s >= onset and e.kind != "miss"]
+        events = [e for e in detect(model, wrong).events if e.start_s >= onset and e.kind != "missing"]
         first = events[0].start_s if events else whole.time[-1]
-        assert first - onset == pytest.approx(told.delay[i, 0], abs=1.1)
-    assert told.missed[:, 0].tolist() == [True, False, False]  # 0.1 m/s is too slow for so short a window
+        assert first - onset == pytest.approx(result.delay[i, 0], abs=1.1)
+    assert result.missed[:, 0].tolist() == [True, False, False]  # 0.1 m/s is too slow for so short a window
 
 
 def test_a_silent_half_promises_nothing() -> None:
@@ -67,7 +67,7 @@ def test_a_silent_half_promises_nothing() -> None:
     value = np.column_stack([100 + noise + 20.0 * (time > 220), np.full(300, 50.0)])
     channels = (Channel("altitude", "gnss", "m"), Channel("altitude", "barometer", "m"))
     log = Log(time, value, np.ones((300, 2), bool), channels, (Sensor("gnss", 1.0), Sensor("barometer", 1.0)))
-    told = judged(Beats.of("slope", log, SHORT.setting), SHORT)
-    assert told.false in (1, 2)  # noise may part the run
-    assert told.ratio > 3
-    assert 0.1 < told.far < 0.3
+    result = judged(Beats.of("slope", log, SHORT.setting), SHORT)
+    assert result.false in (1, 2)  # noise may part the run
+    assert result.ratio > 3
+    assert 0.1 < result.far < 0.3

@@ -40,9 +40,9 @@ def test_an_outcome_counts_the_right_satellite_its_delay_and_the_wrong_ones() ->
         flagged[m, :onset] = True  # before the fault nothing counts
     off = np.full((trial, 413), 3.0)
     nothing = np.full((trial, 413, 2), np.nan)
-    (told,) = outcome(Flown(flagged, off, off, nothing, nothing), 1)
+    (result,) = outcome(Flown(flagged, off, off, nothing, nothing), 1)
     expected = {"detection_rate": 0.75, "delay_s": 20.0, "wrong_exclusions": 0.1, "hrmse_m": 3.0}
-    assert told == pytest.approx(expected)
+    assert result == pytest.approx(expected)
     (never,) = outcome(Flown(flagged & False, off, off, nothing, nothing), 1)
     assert never["delay_s"] == LASTS
 
@@ -56,12 +56,12 @@ def _data(real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("_data")
 def test_on_gaussian_noise_innovations_are_as_large_as_the_filter_says() -> None:
     of = case()
-    told = flown(unwatched(of, 1.0), of, pseudoranges("gaussian", range(70, 82)))
-    each = told.normalised[:, SETTLED:].std(axis=(1, 2))
+    result = flown(unwatched(of, 1.0), of, pseudoranges("gaussian", range(70, 82)))
+    each = result.normalised[:, SETTLED:].std(axis=(1, 2))
     assert (each > 0.9).all()
     assert (each < 1.1).all()
     # two metres on the level where a single epoch knows three
-    assert np.sqrt(np.mean(told.off_m[:, SETTLED:] ** 2)) < 2.0
+    assert np.sqrt(np.mean(result.off_m[:, SETTLED:] ** 2)) < 2.0
 
 
 @pytest.mark.real
@@ -73,6 +73,6 @@ def test_a_limit_is_set_by_the_rate_that_it_achieves_and_finds_a_large_step_at_o
     assert 0.01 < reached < 0.04
     assert 2.5 < limit.low <= limit.limit <= limit.high < 6.0
     assert false_alarms(flown(limited(monitor, np.inf), of, pseudoranges("heavy", [1]))) == 0.0
-    (told,) = outcome(flown(monitor, of, trials(pseudoranges("heavy", [2]), Lie("step", 30.0))), 1)
-    assert told["detection_rate"] > 0.97
-    assert told["delay_s"] < 1.0
+    (result,) = outcome(flown(monitor, of, trials(pseudoranges("heavy", [2]), Lie("step", 30.0))), 1)
+    assert result["detection_rate"] > 0.97
+    assert result["delay_s"] < 1.0

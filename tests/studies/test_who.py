@@ -28,15 +28,15 @@ def test_what_is_counted() -> None:
     monitor = gate(log.between(end_s=80.0))
     ramp = Ramp("height", 8.0, 100.0)
     found = replay_log(monitor, ramp.on(log))
-    told = judged(found, log, ramp)
-    assert told["detection_rate"] == told["named"] == 1.0
-    assert told["delay_s"] < 5.0
+    result = judged(found, log, ramp)
+    assert result["detection_rate"] == result["named"] == 1.0
+    assert result["delay_s"] < 5.0
     silent = found._replace(channel=np.zeros_like(found.channel), sample=np.zeros_like(found.sample))
     assert judged(silent, log, ramp) == {
         "detection_rate": 0.0, "delay_s": LASTS_S, "named": 0.0, "wrong_exclusions": 0.0,
     }  # fmt: skip
     late = (log.time >= 110.0) & (log.time < 111.0)
     silent.channel[late, 2] = silent.sample[late] = FAULT
-    told = judged(silent, log, ramp)
-    assert (told["detection_rate"], told["named"], told["wrong_exclusions"]) == (1.0, 0.0, 1.0)
-    assert abs(told["delay_s"] - 10.0) < 1e-6
+    result = judged(silent, log, ramp)
+    assert (result["detection_rate"], result["named"], result["wrong_exclusions"]) == (1.0, 0.0, 1.0)
+    assert abs(result["delay_s"] - 10.0) < 1e-6

@@ -26,7 +26,7 @@ def test_a_mission_is_as_the_paper_says(case) -> None:
     assert np.abs(came.sum(axis=0) - [237, 225]).max() < 12
     assert case.wrong[case.judged].sum() == 57
     assert {fault.start_s for fault in PRINTED} <= {fault.start_s for fault in case.faults}
-    assert all(fault.duration_s <= 60 for fault in case.faults if fault.start_s >= TRAINED_S and fault.kind == "jam")
+    assert all(fault.duration_s <= 60 for fault in case.faults if fault.start_s >= TRAINED_S and fault.kind == "frozen")
     assert early(case).log.time.max() < TRAINED_S
 
 
@@ -52,11 +52,11 @@ def test_lockout_is_the_longest_wait(case) -> None:
 def test_scores_are_the_papers(case) -> None:
     """Table 2 and figure 16 of the paper: ANFIS."""
     run = through(chi_square("x", early(case).log, 0.01, Filter(0.2)).monitor, case)
-    told = scores(np.array([47.0, 401.0, 4.0, 10.0]), run.off_m)
-    assert told["accuracy"] == pytest.approx(448 / 462)
-    assert told["precision"] == pytest.approx(47 / 51)
-    assert told["fpr"] == pytest.approx(4 / 405)
-    assert told["fnr"] == pytest.approx(10 / 57)
+    result = scores(np.array([47.0, 401.0, 4.0, 10.0]), run.off_m)
+    assert result["accuracy"] == pytest.approx(448 / 462)
+    assert result["precision"] == pytest.approx(47 / 51)
+    assert result["fpr"] == pytest.approx(4 / 405)
+    assert result["fnr"] == pytest.approx(10 / 57)
 
 
 def test_a_limit_eased_flags_less(case) -> None:

@@ -31,8 +31,8 @@ def fitted() -> Fitted:
 
 def test_what_is_counted() -> None:
     size, over = np.array([1.0, 2.0, 8.0, 12.0, 20.0]), np.array([0.5, 1.0, -2.0, -0.5, 3.0])
-    told = judged(WRONG_M, over, size)
-    assert told == pytest.approx({"accuracy": 2 / 5, "recall": 1 / 2, "fpr": 2 / 3, "auc": 4 / 6})
+    result = judged(WRONG_M, over, size)
+    assert result == pytest.approx({"accuracy": 2 / 5, "recall": 1 / 2, "fpr": 2 / 3, "auc": 4 / 6})
     none = judged(WRONG_M, over, size / 10)
     assert none["accuracy"] == 2 / 5
     assert np.isnan([none["recall"], none["auc"]]).all()
@@ -44,9 +44,9 @@ def test_every_way_to_learn_finds_what_is_plain_to_see(monkeypatch: pytest.Monke
     })  # fmt: skip
     numbers = Numbers("E", "simulated", "simulated")
     compared(numbers, "Q0.2", ranges(0), ranges(1, 200), WRONG_M)
-    told = {(row.method, row.condition, row.metric): row.value for row in numbers.rows()}
-    assert {key[:2] for key in told} == {(LOGISTIC, "Q0.2"), *((ANFIS, f"Q0.2 {name}") for name in SETTINGS)}
-    for (_, condition, metric), value in told.items():
+    result = {(row.method, row.condition, row.metric): row.value for row in numbers.rows()}
+    assert {key[:2] for key in result} == {(LOGISTIC, "Q0.2"), *((ANFIS, f"Q0.2 {name}") for name in SETTINGS)}
+    for (_, condition, metric), value in result.items():
         assert value > 0.85 or metric not in ("accuracy", "auc"), (condition, metric)
         assert value < 4.0 or metric != "rms", condition
 

@@ -97,7 +97,7 @@ def test_an_unwatched_channel_carries_no_weight(rows: int) -> None:
     wild = value.copy()
     wild[:, ~watched] = 1e6 * rng.standard_normal((rows, 2))
     calm, other = (fit_elm(v, Scaling.of(v, watched)) for v in (value, wild))
-    for name in ("weights", "bias", "output", "center", "half", "cov", "watched"):
+    for name in ("weights", "offset", "output", "center", "half", "cov", "watched"):
         np.testing.assert_array_equal(getattr(calm, name), getattr(other, name), err_msg=name)
     assert not np.asarray(calm.weights)[:, ~watched].any()
     assert not np.asarray(calm.output)[~watched].any()

@@ -48,8 +48,8 @@ def test_the_best_weights_are_kept() -> None:
     x = judged.matrix()
     for layer in done.net.hidden:
         x = np.tanh(x @ np.asarray(layer.weights).T + np.asarray(layer.bias))
-    told = x @ np.asarray(done.net.output.weights).T + np.asarray(done.net.output.bias)
-    assert ((told - judged.target) ** 2).mean() == pytest.approx(min(done.validated), rel=1e-4)
+    result = x @ np.asarray(done.net.output.weights).T + np.asarray(done.net.output.bias)
+    assert ((result - judged.target) ** 2).mean() == pytest.approx(min(done.validated), rel=1e-4)
 
 
 def test_it_stops_when_patience_is_used_up() -> None:
@@ -89,22 +89,22 @@ def test_the_same_seed_the_same_network() -> None:
 
 
 def test_every_epoch_is_told() -> None:
-    told: list[str] = []
-    done = fitted(session=Session(told.append))
-    assert len(told) == len(done.validated)
-    assert told[2] == f"epoch 3 of at most 12, validation error {np.sqrt(done.validated[2]):.3g}"
+    result: list[str] = []
+    done = fitted(session=Session(result.append))
+    assert len(result) == len(done.validated)
+    assert result[2] == f"epoch 3 of at most 12, validation error {np.sqrt(done.validated[2]):.3g}"
 
 
 @pytest.mark.parametrize("after", [1, 4, 11])
 def test_a_break_makes_no_difference(after: int, tmp_path: Path) -> None:
     """Stopped after any epoch and gone on from the checkpoint: the same to the bit."""
     path = tmp_path / "half.checkpoint"
-    told: list[str] = []
+    result: list[str] = []
 
     def break_off(said: str) -> None:
-        if len(told) == after:
+        if len(result) == after:
             raise KeyboardInterrupt
-        told.append(said)
+        result.append(said)
 
     with pytest.raises(KeyboardInterrupt):
         fitted(session=Session(break_off, path))

@@ -52,19 +52,19 @@ def test_consequents_are_least_squares(kind: str) -> None:
         design[n] /= design[n, :, 3].sum()
     design = design.reshape(60, -1)
     want, *_ = np.linalg.lstsq(design, given.y)
-    told = solve(Numbers.of(premises), given)
-    np.testing.assert_allclose(told.left, design @ want - given.y, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(design @ told.consequents.reshape(-1) - given.y, told.left, rtol=0, atol=1e-9)
+    result = solve(Numbers.of(premises), given)
+    np.testing.assert_allclose(result.left, design @ want - given.y, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(design @ result.consequents.reshape(-1) - given.y, result.left, rtol=0, atol=1e-9)
     if kind != "triangle":
-        np.testing.assert_allclose(told.consequents.reshape(-1), want, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(result.consequents.reshape(-1), want, rtol=1e-5, atol=1e-6)
 
 
 def test_two_features_that_are_one_share_their_slope() -> None:
     rng = np.random.default_rng(0)
     x = rng.uniform(0, 1, (50, 1))
     one = Premises(np.full(2, 0.5), np.full(2, 9.0), np.ones(2), (0, 1), ((0, 1),), "gaussian")
-    told = solve(Numbers.of(one), Lesson.of(one, np.hstack([x, x]), 3 * x[:, 0] + 1)).consequents
-    np.testing.assert_allclose(told, [[1.5, 1.5, 1.0]], rtol=1e-3)
+    result = solve(Numbers.of(one), Lesson.of(one, np.hstack([x, x]), 3 * x[:, 0] + 1)).consequents
+    np.testing.assert_allclose(result, [[1.5, 1.5, 1.0]], rtol=1e-3)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -75,10 +75,10 @@ def test_the_slope_is_that_of_differences(kind: str) -> None:
     rng = np.random.default_rng(2)
     numbers = Numbers(*(x * rng.uniform(0.9, 1.2, x.size) + 0.03 for x in Numbers.of(premises)))
     solved = solve(numbers, given)
-    told = slope(numbers, given, solved)
+    result = slope(numbers, given, solved)
     for k, name in enumerate(Numbers._fields):
         if name == "slope" and kind != "bell":
-            assert not told.slope.any()
+            assert not result.slope.any()
             continue
         for p in range(6):
             errors = np.zeros((2, 2))
@@ -88,8 +88,8 @@ def test_the_slope_is_that_of_differences(kind: str) -> None:
                 other = numbers._replace(**{name: moved})
                 errors[s] = [solve(other, given, held).error ** 2 for held in (solved.consequents, None)]
             want = (errors[0] - errors[1]) / 2e-6
-            np.testing.assert_allclose(told[k][p], want[0], rtol=1e-5, atol=1e-8)
-            np.testing.assert_allclose(told[k][p], want[1], rtol=1e-2, atol=1e-5)
+            np.testing.assert_allclose(result[k][p], want[0], rtol=1e-5, atol=1e-8)
+            np.testing.assert_allclose(result[k][p], want[1], rtol=1e-2, atol=1e-5)
 
 
 def test_the_step_rule_is_jangs() -> None:
@@ -106,45 +106,45 @@ def test_the_step_rule_is_jangs() -> None:
 def test_it_learns_jangs_first_example() -> None:
     """sinc(x) sinc(y) on 121 points, four memberships an input, 250 epochs: Jang 1993, section V, example 1."""
     at = np.stack(np.meshgrid(np.linspace(-10, 10, 11), np.linspace(-10, 10, 11)), axis=-1).reshape(-1, 2)
-    told = fit_anfis(
+    result = fit_anfis(
         at + 10, np.sinc(at / np.pi).prod(axis=1), Setting(memberships=4, ridge=1e-9, step=0.02, epochs=250)
     )
-    assert told.learned[0] == pytest.approx(0.105, abs=1e-3)
-    assert told.rmse < 0.01
-    assert told.rmse == min(told.learned)
+    assert result.learned[0] == pytest.approx(0.105, abs=1e-3)
+    assert result.rmse < 0.01
+    assert result.rmse == min(result.learned)
 
 
 @pytest.mark.parametrize("log", [True, False])
 @pytest.mark.parametrize("partition", ["grid", "scatter", "subtractive"])
 def test_it_foretells_the_error_of_a_range(partition: str, log: bool) -> None:
     features, target = ranges(0)
-    told = fit_anfis(features, target, Setting(partition=partition, log=log, radius=0.2, epochs=40))
-    assert told.rmse <= told.learned[0]
-    np.testing.assert_allclose(told.rmse, np.sqrt(np.mean((predicted(told, features) - target) ** 2)), rtol=1e-9)
+    result = fit_anfis(features, target, Setting(partition=partition, log=log, radius=0.2, epochs=40))
+    assert result.rmse <= result.learned[0]
+    np.testing.assert_allclose(result.rmse, np.sqrt(np.mean((predicted(result, features) - target) ** 2)), rtol=1e-9)
     np.testing.assert_allclose(
-        told.learned[0], np.sqrt(np.mean((predicted(told, features, start=True) - target) ** 2)), rtol=1e-9
+        result.learned[0], np.sqrt(np.mean((predicted(result, features, start=True) - target) ** 2)), rtol=1e-9
     )
     other, error = ranges(1)
-    assert np.sqrt(np.mean((predicted(told, other) - error) ** 2)) < 0.4 * error.std()
+    assert np.sqrt(np.mean((predicted(result, other) - error) ** 2)) < 0.4 * error.std()
 
 
 def test_the_best_epoch_is_that_of_the_rows_unseen() -> None:
     seen, unseen = ranges(0, 40), ranges(1, 100)
-    told = fit_anfis(*seen, Setting(epochs=60, step=0.1), unseen)
-    assert len(told.validated) == len(told.learned) == 61
-    assert told.best_epoch == int(np.argmin(told.validated))
-    error = np.sqrt(np.mean((predicted(told, unseen.features) - unseen.target) ** 2))
-    np.testing.assert_allclose(error, min(told.validated), rtol=1e-9)
+    result = fit_anfis(*seen, Setting(epochs=60, step=0.1), unseen)
+    assert len(result.validated) == len(result.learned) == 61
+    assert result.best_epoch == int(np.argmin(result.validated))
+    error = np.sqrt(np.mean((predicted(result, unseen.features) - unseen.target) ** 2))
+    np.testing.assert_allclose(error, min(result.validated), rtol=1e-9)
 
 
 def test_a_population_finds_no_worse() -> None:
     features, target = ranges(3, 60)
     setting = Setting(premises="population", epochs=3)
-    told, again = (fit_anfis(features, target, setting) for _ in range(2))
-    assert told.rmse < told.start.consequents.size * told.learned[0]
-    assert told.rmse <= fit_anfis(features, target, Setting(epochs=0)).rmse
-    assert all(b <= a for a, b in zip(told.learned, told.learned[1:], strict=False))
-    np.testing.assert_array_equal(told.model.premises.center, again.model.premises.center)
+    result, again = (fit_anfis(features, target, setting) for _ in range(2))
+    assert result.rmse < result.start.consequents.size * result.learned[0]
+    assert result.rmse <= fit_anfis(features, target, Setting(epochs=0)).rmse
+    assert all(b <= a for a, b in zip(result.learned, result.learned[1:], strict=False))
+    np.testing.assert_array_equal(result.model.premises.center, again.model.premises.center)
     unseen = ranges(4, 60)
     judged = fit_anfis(features, target, setting, unseen)
     error = np.sqrt(np.mean((predicted(judged, unseen.features) - unseen.target) ** 2))
@@ -212,9 +212,9 @@ def test_a_feature_that_never_moves_does_no_harm() -> None:
     features, target = ranges(0)
     features[:, 2] = 9.0
     for setting in (Setting(epochs=20), Setting(epochs=20, log=True), Setting(partition="subtractive", epochs=5)):
-        told = fit_anfis(features, target, setting)
-        assert np.isfinite(predicted(told, features * 3)).all()
-        assert told.rmse < target.std()
+        result = fit_anfis(features, target, setting)
+        assert np.isfinite(predicted(result, features * 3)).all()
+        assert result.rmse < target.std()
 
 
 def test_an_innovation_of_nought_does_not_stretch_the_range_of_logarithms() -> None:
@@ -242,6 +242,6 @@ def test_five_rows_or_one_that_is_not_finite_are_refused() -> None:
 
 def test_hybrid_without_epochs_is_the_partition() -> None:
     premises = grid(3, 2)
-    told = hybrid(Numbers.of(premises), lesson(premises), None, 0, 0.1)
-    np.testing.assert_array_equal(told.numbers.center, premises.center)
-    assert told.best_epoch == 0
+    result = hybrid(Numbers.of(premises), lesson(premises), None, 0, 0.1)
+    np.testing.assert_array_equal(result.numbers.center, premises.center)
+    assert result.best_epoch == 0

@@ -19,8 +19,8 @@ def test_each_size_is_learned_from_that_many_rows() -> None:
         np.testing.assert_array_equal(part.features[:, 0], part.target)
         return lambda features: np.full(len(features), float(len(part.target)))
 
-    told = learning_curve(fit, lambda answer, target: float(answer[0] + target[0]), learn, test, (20, 40), draws=3)
-    assert told == [(20, 21.0)] * 2 + [(40, 41.0)] * 3
+    result = learning_curve(fit, lambda answer, target: float(answer[0] + target[0]), learn, test, (20, 40), draws=3)
+    assert result == [(20, 21.0)] * 2 + [(40, 41.0)] * 3
     assert all(len(set(part)) == len(part) for part in seen)
     assert all(set(small) < set(large) for small, large in zip(seen[::2], seen[1::2], strict=True))
     assert set(seen[0]) != set(seen[2])

@@ -19,12 +19,12 @@ def rows(count: int = 150) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("c", [0.1, 1.0, 100.0])
 def test_it_is_scikit_learns(log: bool, c: float) -> None:
     features, off = rows()
-    told = jax.tree.map(np.asarray, fit_logistic(features, off, log, c=c))
+    result = jax.tree.map(np.asarray, fit_logistic(features, off, log, c=c))
     size = np.log(np.maximum(features, 0.01 * np.median(features, axis=0))) if log else features
     x = (size - size.min(axis=0)) / np.ptp(size, axis=0)
     want = LogisticRegression(C=c, tol=1e-10, max_iter=10_000).fit(x, off)
-    np.testing.assert_allclose(told.weights, want.coef_[0], rtol=1e-4, atol=1e-5)
-    np.testing.assert_allclose(told(features), want.decision_function(x), rtol=1e-4, atol=1e-4)
+    np.testing.assert_allclose(result.weights, want.coef_[0], rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(result(features), want.decision_function(x), rtol=1e-4, atol=1e-4)
 
 
 def test_both_kinds_must_be_there() -> None:
@@ -39,6 +39,6 @@ def test_both_kinds_must_be_there() -> None:
 def test_one_anomaly_is_little_and_no_failure() -> None:
     features, _ = rows()
     one = np.arange(150) == features[:, 0].argmax()
-    told = jax.tree.map(np.asarray, fit_logistic(features, one))(features)
-    assert np.isfinite(told).all()
-    assert told.argmax() == one.argmax()
+    result = jax.tree.map(np.asarray, fit_logistic(features, one))(features)
+    assert np.isfinite(result).all()
+    assert result.argmax() == one.argmax()

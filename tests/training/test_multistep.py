@@ -39,10 +39,10 @@ def test_the_loss_weighs_early_steps_more() -> None:
 
 
 def test_it_learns() -> None:
-    told = trained()
-    assert (np.nanmin(told.loss, axis=2) < 0.2 * told.loss[:, :, 0]).all()
+    result = trained()
+    assert (np.nanmin(result.loss, axis=2) < 0.2 * result.loss[:, :, 0]).all()
     persistence = np.sqrt(np.mean((fixes().height[4:] - fixes().height[:-4]) ** 2))
-    for nets in told.nets:
+    for nets in result.nets:
         assert np.sqrt(np.mean(errors(nets[1], fixes(), (4,)) ** 2)) < 0.3 * persistence
 
 
@@ -54,8 +54,8 @@ def test_seeds_and_numbers_of_steps_do_not_meet() -> None:
 
 
 def test_it_ends_when_no_epoch_is_better() -> None:
-    told = train_steps(fixes(), (1, 2), schedule=Schedule(epochs=200, rate=0.03, every=20, patience=5))
-    for loss in told.loss[0]:
+    result = train_steps(fixes(), (1, 2), schedule=Schedule(epochs=200, rate=0.03, every=20, patience=5))
+    for loss in result.loss[0]:
         done = int(np.isfinite(loss).sum())
         assert done < 200
         assert np.isnan(loss[done:]).all()
@@ -79,15 +79,15 @@ def test_what_has_ended_stands_still() -> None:
 
 def test_rates_drop_by_steps() -> None:
     """With a rate that drops to nothing, nothing moves any more."""
-    told = train_steps(fixes(), (1,), schedule=Schedule(epochs=12, rate=1e-3, drop=0.0, every=4, batch=10_000))
-    loss = told.loss[0, 0]
+    result = train_steps(fixes(), (1,), schedule=Schedule(epochs=12, rate=1e-3, drop=0.0, every=4, batch=10_000))
+    loss = result.loss[0, 0]
     assert (np.diff(loss[:5]) < 0).all()
     np.testing.assert_allclose(loss[5:], loss[4], rtol=1e-6)
 
 
 def test_each_step_may_have_weights_of_its_own() -> None:
-    told = train_steps(fixes(), (2, 3), schedule=Schedule(epochs=5, separate=True))
-    two, three = told.nets[0]
+    result = train_steps(fixes(), (2, 3), schedule=Schedule(epochs=5, separate=True))
+    two, three = result.nets[0]
     assert np.asarray(two.weights).shape[0] == 3
     assert (np.asarray(two.output)[2] == 0).all()  # the third step of two
     assert (np.asarray(three.output) != 0).all()

@@ -20,15 +20,15 @@ def fitted(**setting):
 @pytest.mark.parametrize("log", [True, False])
 def test_a_sentence_has_the_rules_own_numbers(log: bool) -> None:
     model = fitted(memberships=1, log=log)
-    (told,) = sentences(model, ("alpha", "beta", "gamma"), "range error")
+    (result,) = sentences(model, ("alpha", "beta", "gamma"), "range error")
     written = "ln " if log else ""
     assert re.fullmatch(
         r"If the alpha is any, the beta is any and the gamma is any, the range error is -?[\d.e+-]+ m "
         rf"[+-] [\d.e-]+ {written}alpha [+-] [\d.e-]+ {written}beta [+-] [\d.e-]+ {written}gamma\.",
-        told,
+        result,
     )
-    terms = re.findall(rf"([+-]) ([\d.e-]+) {written}", told)
-    constant = float(re.search(r"error is (\S+) m", told)[1])
+    terms = re.findall(rf"([+-]) ([\d.e-]+) {written}", result)
+    constant = float(re.search(r"error is (\S+) m", result)[1])
     for row in (np.array([3.0, 2.0, 20.0]), np.array([8.0, 6.0, 14.0])):
         seen = np.log(row) if log else row
         want = float(jax.tree.map(np.asarray, model)(row))
@@ -38,9 +38,9 @@ def test_a_sentence_has_the_rules_own_numbers(log: bool) -> None:
 
 def test_words_go_by_the_order_of_the_centers() -> None:
     model = fitted()
-    told = sentences(model, FEATURES)
-    assert len(told) == 8
-    assert told[0].startswith(
+    result = sentences(model, FEATURES)
+    assert len(result) == 8
+    assert result[0].startswith(
         "If the innovation is small, the squared Mahalanobis distance is small and the adapted noise is small, "
     )
     table = memberships(model, FEATURES)
@@ -56,6 +56,6 @@ def test_words_go_by_the_order_of_the_centers() -> None:
 
 def test_many_rules_of_their_own_are_named_by_where_they_lie() -> None:
     model = fitted(partition="scatter", rules=5, log=True)
-    told, table = sentences(model, FEATURES), memberships(model, FEATURES)
-    assert len(told) == 5
-    assert f"the innovation is about {table[0].center:.3g}, " in told[0]
+    result, table = sentences(model, FEATURES), memberships(model, FEATURES)
+    assert len(result) == 5
+    assert f"the innovation is about {table[0].center:.3g}, " in result[0]

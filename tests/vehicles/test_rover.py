@@ -58,10 +58,10 @@ def test_ranges_are_to_the_landmarks_wherever_it_looks() -> None:
 
 
 def test_it_begins_at_a_whole_pose() -> None:
-    state, spread, told = ROVER.start(sample(pose=(1.0, 2.0, 0.5)))
+    state, spread, result = ROVER.start(sample(pose=(1.0, 2.0, 0.5)))
     np.testing.assert_allclose(state, [1.0, 2.0, 0.5])
     np.testing.assert_allclose(spread, [0.1, 0.2, 0.3])
-    assert told
+    assert result
     assert not ROVER.start(sample(pose=(1.0, 2.0, np.nan)))[2]
 
 

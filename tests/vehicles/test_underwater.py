@@ -54,8 +54,8 @@ def test_a_kilometre_is_one(latitude) -> None:
     for way in ([300.0, 0.0], [0.0, 300.0], [700.0, -700.0]):
         there = here + np.asarray(way) / np.asarray(vehicle._metres(jnp.asarray(here)))
         away = np.linalg.norm(geodetic_to_ecef(*there, 0.0) - geodetic_to_ecef(*here, 0.0))
-        told = vehicle.expected(jnp.asarray(here), _sample([0.0, *there, 0.0, 0.0]))
-        np.testing.assert_allclose(told, [away], rtol=1e-5)
+        result = vehicle.expected(jnp.asarray(here), _sample([0.0, *there, 0.0, 0.0]))
+        np.testing.assert_allclose(result, [away], rtol=1e-5)
 
 
 def test_depths_count() -> None:

@@ -41,9 +41,9 @@ def _over(means: Means, time: Float[Array, " T"], normalised: Float[Array, "T C"
     unit, none = jnp.eye(normalised.shape[1]), jnp.zeros(normalised.shape[1], bool)
 
     def one(past: Any, row: tuple[Array, Array]) -> tuple[Any, Float[Array, "C W"]]:
-        now, told = row
-        valid = jnp.isfinite(told)
-        value = jnp.where(valid, told, 0.0)
+        now, result = row
+        valid = jnp.isfinite(result)
+        value = jnp.where(valid, result, 0.0)
         mean, past = means.over(past, Residual(now, value, unit, value, value, value, valid, none))
         return past, jnp.where(valid[:, None], mean, jnp.nan)
 

@@ -20,7 +20,7 @@ from sensorfault.stages.statistic.norm import Norm
 from sensorfault.stages.threshold.fixed import Fixed
 
 
-def deaf(monitor: Monitor) -> Monitor:
+def uncalibrated(monitor: Monitor) -> Monitor:
     """The monitor with all its limits off."""
     off = [Fixed(jnp.full(shape.shape, jnp.inf)) for shape in jax.eval_shape(_scores, monitor)]
     made: Monitor = eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, off)
@@ -35,9 +35,9 @@ def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
     return [score.value for score in monitor.step(monitor.init(), sample)[1].scores]
 
 
-def score_tape(deaf: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
+def open_loop_scores(uncalibrated: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
     """The scores of every branch over a log, NaN where a test had nothing to test."""
-    return tuple(np.asarray(score) for score in replay_log(deaf, log).scores)
+    return tuple(np.asarray(score) for score in replay_log(uncalibrated, log).scores)
 
 
 def extra_tape(residual: Stage[Any, Sample, Residual, Any], log: Log) -> Any:

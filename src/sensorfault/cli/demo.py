@@ -63,10 +63,10 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     show.events(found.events, f"Fault events (simulated {scenario.words}, injected faults)", json_path != "-")
     right = sum(outcome.channel_right and outcome.kind_right for outcome in verdict.outcomes)
     seen = sum(outcome.found for outcome in verdict.outcomes)
-    innocents = sum(outcome.innocents for outcome in verdict.outcomes)
+    false_isolations = sum(outcome.false_isolations for outcome in verdict.outcomes)
     show.say(
         f"\n{seen} of {len(verdict.outcomes)} injected faults found, {right} with sensor, channel and kind right; "
-        f"{innocents} events on healthy channels meanwhile, {len(verdict.false_alarms)} false alarms in "
+        f"{false_isolations} events on healthy channels meanwhile, {len(verdict.false_alarms)} false alarms in "
         f"{verdict.healthy_hours * 60:.1f} healthy minutes."
     )
     for sentence in work.not_watched(model):

@@ -54,9 +54,9 @@ def command(
         check(out)
     work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
     if long.by_parts(log, by_parts):
-        told = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), report_path)
-        _write(told.events, told.log, log, outs, json_path)
-        show.write_json(json_path, long.answer(told))
+        result = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), report_path)
+        _write(result.events, result.log, log, outs, json_path)
+        show.write_json(json_path, long.answer(result))
         return
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)

@@ -91,8 +91,8 @@ def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None)
         )
         delay = show.number(outcome.delay_s)
         words = f"{show.clock(outcome.fault.start_s)} {show.fault_words(outcome.fault)}"
-        told = (*right, str(outcome.innocents)) if outcome.found else ("", "", "", "")
-        rows.append((words, "yes" if outcome.found else "no", delay, found, *told))
+        result = (*right, str(outcome.false_isolations)) if outcome.found else ("", "", "", "")
+        rows.append((words, "yes" if outcome.found else "no", delay, found, *result))
     show.table("Injected faults", columns, rows, json_path != "-")
     if learned:
         show.say(f"{learned} faults lie in the part that was fitted on and were not judged.")
@@ -120,7 +120,7 @@ def _show_campaign(log: "Log", done: "Campaign", json_path: str | None) -> None:
             *(show.percent(cell.recall), show.percent(cell.chance)),
             *(show.number(cell.delay_p50_s), show.number(cell.delay_p95_s)),
             *(show.percent(x) for x in (cell.sensor_right, cell.channel_right, cell.kind_right)),
-            *(show.number(cell.innocents), show.percent(cell.recovery)),
+            *(show.number(cell.false_isolations), show.percent(cell.recovery)),
         )
         for cell in done.cells
     ]

@@ -38,7 +38,7 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
     rows = [(name, "yes" + (f", without {', '.join(without[name])}" if without[name] else "")) for name in applies]
     rows += [(", ".join(names), f"no: {reason}") for reason, names in _by_reason(lacking).items()]
     show.table("Methods", ("method", "applies"), rows, answer)
-    told = {
+    result = {
         "log": table.name,
         "duration_s": summing.end_s - float(table.time[0]),
         "tick_s": table.period_s,
@@ -50,7 +50,7 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
         "applies": {name: {"without": without[name]} for name in applies},
         "does_not_apply": lacking,
     }
-    show.write_json(json_path, told)
+    show.write_json(json_path, result)
 
 
 def _whole(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":

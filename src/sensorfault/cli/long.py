@@ -75,12 +75,12 @@ def detect(
     with show.reading(path.name) as tell:
         found = detect_long(model, path, vehicle, tell, see if report is not None else None, wanted.learn)
     _say(found.log.name, found.rows, float(found.log.time[-1]), found.notes)
-    told = work.own_limits(found.model, *found.fitted_on_s) if found.fitted_on_s else work.limits(found.model)
+    result = work.own_limits(found.model, *found.fitted_on_s) if found.fitted_on_s else work.limits(found.model)
     if found.fitted_on_s:
-        for sentence in told:
+        for sentence in result:
             show.say(sentence)
     if report is not None:
-        write_sketch(sketches[0], report, truth, summary=told, notes=found.notes)
+        write_sketch(sketches[0], report, truth, summary=result, notes=found.notes)
         show.say(f"Wrote {report}.")
     return found
 

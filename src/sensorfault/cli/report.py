@@ -41,9 +41,9 @@ def command(
     work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
     truth = work.read_truth(truth_path) if truth_path else ()
     if long.by_parts(log, by_parts):
-        told = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), out, truth)
-        show.say(f"{len(told.events)} fault events.")
-        show.write_json(json_path, long.answer(told))
+        result = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), out, truth)
+        show.say(f"{len(result.events)} fault events.")
+        show.write_json(json_path, long.answer(result))
         return
     table = work.read_log(log, vehicle)
     ready = work.ready(table, model_path, method, learn, seed)

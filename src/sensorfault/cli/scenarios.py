@@ -40,14 +40,14 @@ DRIVE = Scenario(
     learn_s=240.0,
     pause_s=10.0,
     faults=(
-        Fault("short", "gyro", "z", 0, 0, 20, sigmas=True),
-        Fault("short", "accelerometer", "x", 0, 0, 20, sigmas=True),
-        Fault("bias", "accelerometer", "y", 0, 15, 20, sigmas=True),
-        Fault("bias", "gyro", "x", 0, 15, 20, sigmas=True),
-        Fault("jam", "gyro", "y", 0, 10),
-        Fault("jam", "accelerometer", None, 0, 5),
-        Fault("miss", "gyro", None, 0, 5),
-        Fault("miss", "gnss", None, 0, 5),
+        Fault("spike", "gyro", "z", 0, 0, 20, sigmas=True),
+        Fault("spike", "accelerometer", "x", 0, 0, 20, sigmas=True),
+        Fault("offset", "accelerometer", "y", 0, 15, 20, sigmas=True),
+        Fault("offset", "gyro", "x", 0, 15, 20, sigmas=True),
+        Fault("frozen", "gyro", "y", 0, 10),
+        Fault("frozen", "accelerometer", None, 0, 5),
+        Fault("missing", "gyro", None, 0, 5),
+        Fault("missing", "gnss", None, 0, 5),
     ),
 )
 FLIGHT = Scenario(
@@ -59,7 +59,7 @@ FLIGHT = Scenario(
     pause_s=90.0,
     faults=(
         Fault("drift", "gnss", "altitude", 0, 60, 0.5),
-        Fault("bias", "gnss", "altitude", 0, 20, 25),
-        Fault("miss", "barometer", None, 0, 10),
+        Fault("offset", "gnss", "altitude", 0, 20, 25),
+        Fault("missing", "barometer", None, 0, 10),
     ),
 )

@@ -117,7 +117,7 @@ EVENT_COLUMNS = ("start", "end", "sensor", "channel", "kind", "peak", "limit")
 
 def event_row(event: "Event") -> tuple[str, ...]:
     """One event as a row of EVENT_COLUMNS."""
-    nobody = "the whole log" if event.kind == "miss" else "unknown which"
+    nobody = "the whole log" if event.kind == "missing" else "unknown which"
     sensor = "vehicle motion" if event.subject == "motion" else event.sensor or nobody
     channel = event.channel or ("" if event.sensor is None else "all")
     ends = clock(event.start_s), clock(event.end_s)

@@ -122,10 +122,10 @@ def ready(log: "Log", model_path: Path | None, method: str, learn: float, seed: 
         task = bar.add_task(f"fitting {method}", total=None)
         model = fit(log.between(end_s=cut), method, held_out=0.0, seed=seed)
         bar.update(task, total=1, completed=1)
-    told = own_limits(model, start, cut)
-    for sentence in told:
+    result = own_limits(model, start, cut)
+    for sentence in result:
         show.say(sentence)
-    return Ready(model, log.between(cut), (start, cut), told)
+    return Ready(model, log.between(cut), (start, cut), result)
 
 
 def own_limits(model: "Model", start_s: float, end_s: float) -> tuple[str, ...]:
@@ -148,12 +148,12 @@ def limits(model: "Model") -> tuple[str, ...]:
 
 def rate(model: "Model") -> tuple[str, ...]:
     """What is known of the false-alarm rate."""
-    told = model.summary
-    if "alarms_per_hour" not in told:
+    result = model.summary
+    if "alarms_per_hour" not in result:
         return ("False-alarm rate: not measured.",)
     return (
-        f"False alarms: {told['held_out_alarms']} in the {told['held_out_s']:.0f} s held out from the fit, "
-        f"{told['alarms_per_hour']:.3g} an hour; with 95 % confidence below {told['alarms_per_hour_below']:.3g}.",
+        f"False alarms: {result['held_out_alarms']} in the {result['held_out_s']:.0f} s held out from the fit, "
+        f"{result['alarms_per_hour']:.3g} an hour; with 95 % confidence below {result['alarms_per_hour_below']:.3g}.",
     )
 
 

@@ -74,7 +74,7 @@ class _Judgement(NamedTuple):
     scores: tuple[Score, ...]
     limits: tuple[Float[Array, " K"], ...]
     pending: tuple[tuple[Any, Any], ...]
-    told: Accusation
+    accusation: Accusation
     decided: Any
 
 
@@ -127,13 +127,13 @@ class Monitor(eqx.Module):
         residual = residual._replace(valid=valid, out=nobody)
 
         first = self._judge(state, residual, nobody)
-        told, decided, struck, out = self._exclude(state, residual, first)
-        verdict, tested, gated = self._verdict(state, sample, told, struck, out)
+        accusation, decided, excluded, out = self._exclude(state, residual, first)
+        verdict, tested, gated = self._verdict(state, sample, accusation, excluded, out)
         troubled = jnp.where(verdict.sample == FAULT, sample.time, state.troubled)
         motion, moved, slid = self._motion(state, sample, first, troubled)
         verdict = verdict._replace(motion=motion)
         trust, recovered = self.recovery.evaluate(state.recovery, (sample, residual, verdict, gated))
-        trust = trust._replace(learn=trust.learn & ~told.suspect)
+        trust = trust._replace(learn=trust.learn & ~accusation.suspect)
 
         # Evidence windows take what the first judgement saw, suspicious or not; the decision remembers the last one.
         branches = tuple(
@@ -165,7 +165,7 @@ class Monitor(eqx.Module):
         value = jnp.where(arrived, sample.value, state.last)
         return sample._replace(value=value, present=arrived | held, fresh=sample.fresh & arrived), arrived
 
-    def _judge(self, state: MonitorState, residual: Residual, struck: Bool[Array, " C"]) -> _Judgement:
+    def _judge(self, state: MonitorState, residual: Residual, excluded: Bool[Array, " C"]) -> _Judgement:
         scores, limits, pending = [], [], []
         for branch, (of_statistic, of_threshold) in zip(self.branches, state.branches, strict=True):
             score, s = branch.statistic.evaluate(of_statistic, residual)
@@ -184,11 +184,11 @@ class Monitor(eqx.Module):
             limits=tuple(limits[i] for i in of_sensors),
             gates=tuple(self.branches[i].gates for i in of_sensors),
             certain=tuple(self.branches[i].certain for i in of_sensors),
-            struck=struck,
+            excluded=excluded,
             born=residual.born,
         )
-        told, decided = self.decision.evaluate(state.decision, evidence)
-        return _Judgement(tuple(scores), tuple(limits), tuple(pending), told, decided)
+        accusation, decided = self.decision.evaluate(state.decision, evidence)
+        return _Judgement(tuple(scores), tuple(limits), tuple(pending), accusation, decided)
 
     def _exclude(
         self, state: MonitorState, residual: Residual, first: _Judgement
@@ -200,59 +200,59 @@ class Monitor(eqx.Module):
         owner = jnp.asarray(self.owner)
         nobody = jnp.zeros(len(self.owner), bool)
         if not self.most:
-            return first.told, first.decided, nobody, nobody
+            return first.accusation, first.decided, nobody, nobody
 
-        def accused(told: Accusation, out: Bool[Array, " C"]) -> Bool[Array, " C"]:
-            return told.gated & (told.size > -jnp.inf) & ~out
+        def accused(accusation: Accusation, out: Bool[Array, " C"]) -> Bool[Array, " C"]:
+            return accusation.gated & (accusation.size > -jnp.inf) & ~out
 
         def more(carry: _Round) -> Bool[Array, ""]:
-            told, _, _, out, rounds = carry
-            going = accused(told, out).any() & (rounds < self.most)
+            accusation, _, _, out, rounds = carry
+            going = accused(accusation, out).any() & (rounds < self.most)
             return going & ((residual.valid & ~out).sum() > self.least) if self.least else going
 
         def strike(carry: _Round) -> _Round:
-            told, _, struck, out, rounds = carry
-            now = accused(told, out)
-            sure = now & told.certain
-            worst = owner == owner[jnp.argmax(jnp.where(now, told.size, -jnp.inf))]
+            accusation, _, excluded, out, rounds = carry
+            now = accused(accusation, out)
+            sure = now & accusation.certain
+            worst = owner == owner[jnp.argmax(jnp.where(now, accusation.size, -jnp.inf))]
             taken = jnp.where(sure.any(), sure, now & worst)
-            struck = struck | taken
+            excluded = excluded | taken
             out = out | taken
             if self.together:
                 out = out | (out[None] & (owner[:, None] == owner[None])).any(axis=1)
-            again = self._judge(state, residual._replace(valid=residual.valid & ~out, out=out), struck)
-            return again.told, again.decided, struck, out, rounds + 1
+            again = self._judge(state, residual._replace(valid=residual.valid & ~out, out=out), excluded)
+            return again.accusation, again.decided, excluded, out, rounds + 1
 
-        start = first.told, first.decided, nobody, nobody, jnp.zeros((), jnp.int32)
-        told, decided, struck, out, _ = lax.while_loop(more, strike, start)
-        return told, decided, struck, out
+        start = first.accusation, first.decided, nobody, nobody, jnp.zeros((), jnp.int32)
+        accusation, decided, excluded, out, _ = lax.while_loop(more, strike, start)
+        return accusation, decided, excluded, out
 
     def _verdict(
         self,
         state: MonitorState,
         sample: Sample,
-        told: Accusation,
-        struck: Bool[Array, " C"],
+        accusation: Accusation,
+        excluded: Bool[Array, " C"],
         out: Bool[Array, " C"],
     ) -> tuple[Verdict, Float[Array, " C"], Bool[Array, " C"]]:
         """Three-valued verdicts, when each channel was last tested, and which channels a filter must not take in."""
         # Accused by this sample's own scores, yet no exclusion left: unknown, not ok.
-        left = told.gated & (told.size > -jnp.inf) & ~struck & bool(self.most)
-        bad = told.named & ~left
-        clear = told.tested & ~left & ~out & ~told.unlaid
+        left = accusation.gated & (accusation.size > -jnp.inf) & ~excluded & bool(self.most)
+        bad = accusation.named & ~left
+        clear = accusation.tested & ~left & ~out & ~accusation.unattributed
         # Without a new test the last verdict stands for hold_s, unless the slot now carries another source.
         age = sample.time - state.tested
-        stands = ~told.tested & ~out & ~sample.born & (age >= 0) & (age <= self.hold_s)
+        stands = ~accusation.tested & ~out & ~sample.born & (age >= 0) & (age <= self.hold_s)
         old = jnp.where(stands, state.verdict, jnp.int8(UNKNOWN))
         channel = jnp.where(bad, jnp.int8(FAULT), jnp.where(clear, jnp.int8(OK), old))
         # the largest over a sensor's channels, without a scatter, which no small loop may hold
         mine = jnp.arange(max(self.owner) + 1)[:, None] == jnp.asarray(self.owner)[None]
         sensor = jnp.where(mine, channel[None], jnp.int8(OK)).max(axis=1)
         known = (channel != UNKNOWN).any()
-        wrong = told.hit | (channel == FAULT).any()
+        wrong = accusation.hit | (channel == FAULT).any()
         whole = jnp.where(wrong, jnp.int8(FAULT), jnp.where(known, jnp.int8(OK), jnp.int8(UNKNOWN)))
-        tested = jnp.where(told.tested, sample.time, state.tested)
-        return Verdict(channel, sensor, whole, state.motion), tested, told.gated | out | left
+        tested = jnp.where(accusation.tested, sample.time, state.tested)
+        return Verdict(channel, sensor, whole, state.motion), tested, accusation.gated | out | left
 
     def _motion(
         self, state: MonitorState, sample: Sample, judged: _Judgement, troubled: Float[Array, ""]

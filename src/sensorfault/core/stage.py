@@ -9,12 +9,12 @@ from sensorfault.core.types import Trust
 
 State = TypeVar("State")
 Seen = TypeVar("Seen", contravariant=True)
-Told = TypeVar("Told", covariant=True)
+Result = TypeVar("Result", covariant=True)
 Pending = TypeVar("Pending")
 
 
 @runtime_checkable
-class Stage(Protocol[State, Seen, Told, Pending]):
+class Stage(Protocol[State, Seen, Result, Pending]):
     """Evaluate first, then update under trust.
 
     `evaluate` is pure and leaves the state alone; `pending` is what it computed and `update` would compute again
@@ -29,7 +29,7 @@ class Stage(Protocol[State, Seen, Told, Pending]):
     """
 
     def init(self) -> State: ...
-    def evaluate(self, state: State, seen: Seen) -> tuple[Told, Pending]: ...
+    def evaluate(self, state: State, seen: Seen) -> tuple[Result, Pending]: ...
     def update(self, pending: Pending, trust: Trust) -> State: ...
 
 

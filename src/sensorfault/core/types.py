@@ -74,7 +74,7 @@ class Evidence(NamedTuple):
     limits: tuple[Float[Array, " K"], ...]
     gates: tuple[bool, ...]
     certain: tuple[bool, ...]
-    struck: Bool[Array, " C"]
+    excluded: Bool[Array, " C"]
     born: Bool[Array, " C"]
 
 
@@ -92,7 +92,7 @@ class Accusation(NamedTuple):
     gated: Bool[Array, " C"]
     certain: Bool[Array, " C"]
     suspect: Bool[Array, " C"]
-    unlaid: Bool[Array, " C"]
+    unattributed: Bool[Array, " C"]
     size: Float[Array, " C"]
     tested: Bool[Array, " C"]
     hit: Bool[Array, ""]

@@ -17,11 +17,11 @@ from sensorfault.runtime.model import MISSED, Model
 
 PAUSE_S = 5.0  # between two faults
 MAGNITUDES = {  # of the faults a campaign injects: sigmas, sigmas a second, factor, seconds
-    "short": (3.0, 10.0, 20.0),
-    "bias": (3.0, 10.0, 20.0),
+    "spike": (3.0, 10.0, 20.0),
+    "offset": (3.0, 10.0, 20.0),
     "drift": (1.0, 3.0),
-    "jam": (0.0,),
-    "miss": (0.0,),
+    "frozen": (0.0,),
+    "missing": (0.0,),
     "noise": (3.0, 10.0),
     "scale": (2.0, 5.0),
     "delay": (0.5, 2.0),
@@ -104,10 +104,10 @@ def _wanted(model: Model, kinds: Sequence[str], duration_s: float) -> Iterator[F
     """Every kind on every watched channel at every magnitude; a miss silences a whole sensor, watched or not."""
     watched = [channel for channel, watch in zip(model.channels, model.watched, strict=True) if watch]
     for kind in kinds:
-        lasting = 0.0 if kind == "short" else duration_s
-        if kind == "miss":
-            heard = (sensor for sensor in model.sensors if MISSED * sensor.period_s < lasting)
-            yield from (Fault(kind, sensor.name, None, 0.0, lasting) for sensor in heard)
+        lasting = 0.0 if kind == "spike" else duration_s
+        if kind == "missing":
+            received = (sensor for sensor in model.sensors if MISSED * sensor.period_s < lasting)
+            yield from (Fault(kind, sensor.name, None, 0.0, lasting) for sensor in received)
             continue
         for size in MAGNITUDES[kind]:
             for channel in watched:

@@ -30,7 +30,7 @@ class Cell:
     sensor_right: float
     channel_right: float
     kind_right: float
-    innocents: float
+    false_isolations: float
     recovery: float
 
 
@@ -63,7 +63,7 @@ def _cell(kind: str, where: str, magnitude: float, group: list[Outcome], clean: 
         sensor_right=_share([outcome.sensor_right for outcome in found]),
         channel_right=_share([outcome.channel_right for outcome in found]),
         kind_right=_share([outcome.kind_right for outcome in found]),
-        innocents=float(np.mean([outcome.innocents for outcome in group])),
+        false_isolations=float(np.mean([outcome.false_isolations for outcome in group])),
         recovery=float(np.median(ratios)) if ratios else float("nan"),
     )
 

@@ -32,7 +32,7 @@ class Outcome:
     channel_right: bool
     kind_right: bool
     named: Event | None
-    innocents: int
+    false_isolations: int
     error_before: float
     error_after: float
 
@@ -73,7 +73,7 @@ def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None
 
 def noticed_s(event: Event) -> float:
     """When an event was first known of: a silence only once it had lasted longer than allowed."""
-    if event.kind == "miss" and event.limit is not None:
+    if event.kind == "missing" and event.limit is not None:
         return event.start_s + event.limit
     return event.start_s
 
@@ -100,7 +100,7 @@ def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
         channel_right=_guilty(fault, first),
         kind_right=first.kind == fault.kind,
         named=first,
-        innocents=sum(not _guilty(fault, event) for event in mine),
+        false_isolations=sum(not _guilty(fault, event) for event in mine),
         error_before=before,
         error_after=after,
     )

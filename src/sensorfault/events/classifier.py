@@ -8,7 +8,7 @@ SURE = 3.0  # standard errors a mean or a slope must stand out by
 
 
 @dataclass
-class Shape:
+class FaultClassifier:
     """Running sums over the new measurements of one channel while its event lasts.
 
     The offset and slope are of the residual (measured minus expected), by least squares over time.
@@ -54,9 +54,9 @@ class Shape:
         if self.n == 0:
             return "unknown"
         if self.end_s - self.start_s <= 1.5 * period_s:
-            return "short"
+            return "spike"
         if self.repeats >= 0.5 * (self.n - 1):
-            return "jam"
+            return "frozen"
         mean, square = self.r / self.n, self.rr / self.n
         spread = max(square - mean**2, 0.0) ** 0.5
         times = max(self.tt / self.n - (self.t / self.n) ** 2, 0.0) ** 0.5
@@ -69,7 +69,7 @@ class Shape:
         if abs(slope) * times > SURE * error and abs(rise) > abs(mean):
             return "drift"
         if abs(mean) > max(SURE * error, spread):
-            return "bias"
+            return "offset"
         if spread > 2 * sigma:
             return "noise"
         return "unknown"

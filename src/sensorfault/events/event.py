@@ -3,7 +3,9 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-KINDS = ("short", "bias", "drift", "jam", "miss", "noise", "scale", "delay", "unknown")
+from sensorfault.faults.fault import KINDS as FAULT_KINDS
+
+KINDS = (*FAULT_KINDS, "unknown")
 
 
 @dataclass(frozen=True)

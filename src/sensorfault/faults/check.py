@@ -22,7 +22,7 @@ def check_fault(fault: Fault) -> None:
             raise FaultError(f"{name}: {field} is {getattr(fault, field)}; give a finite number.")
     if fault.duration_s < 0:
         raise FaultError(f"{name}: duration {fault.duration_s:g} s is negative; give seconds from onset to end.")
-    if fault.duration_s == 0 and fault.kind != "short":
+    if fault.duration_s == 0 and fault.kind != "spike":
         raise FaultError(f"{name}: duration is 0 s; only a short may last 0 s, give a longer one.")
     if fault.magnitude == 0 and fault.kind not in (*SIZELESS, "scale"):
         raise FaultError(f"{name}: magnitude is missing or 0, which is no fault; give a magnitude.")

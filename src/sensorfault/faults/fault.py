@@ -3,9 +3,15 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-KINDS = ("short", "bias", "drift", "jam", "miss", "noise", "scale", "delay")
-OFFSETS = ("short", "bias", "drift", "noise")  # their magnitude carries the channel's unit, or counts its sigmas
-SIZELESS = ("jam", "miss")  # they have no magnitude
+KINDS = ("spike", "offset", "drift", "frozen", "missing", "noise", "scale", "delay")
+OFFSETS = ("spike", "offset", "drift", "noise")  # their magnitude carries the channel's unit, or counts its sigmas
+SIZELESS = ("frozen", "missing")  # they have no magnitude
+FORMER_KINDS = {"short": "spike", "bias": "offset", "jam": "frozen", "miss": "missing"}  # the names until version 0.1
+
+
+def current_kind(name: str) -> str:
+    """The kind's name of today; an unknown name stays as it is."""
+    return FORMER_KINDS.get(name, name)
 
 
 class FaultError(ValueError):
@@ -16,10 +22,10 @@ class FaultError(ValueError):
 class Fault:
     """One injected fault, acting on the measurements with start_s <= time < end_s.
 
-    `channel` None means every channel of the sensor. `magnitude` is, by kind: short, bias: offset; drift: offset a
-    second; noise: added standard deviation; scale: factor; delay: seconds; jam, miss: nothing. Offsets are in the
-    channel's own unit, or with `sigmas` in multiples of the channel's standard deviation over the log. A short of
-    `duration_s` 0 is one spike; every other kind lasts.
+    `channel` None means every channel of the sensor. `magnitude` is, by kind: spike, offset: the offset; drift: offset
+    per second; noise: added standard deviation; scale: factor; delay: seconds; frozen, missing: none. Offsets are in
+    the channel's own unit, or with `sigmas` in multiples of the channel's standard deviation over the log. A spike of
+    `duration_s` 0 is one sample; every other kind lasts. A former name of a kind (FORMER_KINDS) is accepted.
     """
 
     kind: str
@@ -29,6 +35,9 @@ class Fault:
     duration_s: float
     magnitude: float = 0.0
     sigmas: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "kind", current_kind(self.kind))
 
     @property
     def end_s(self) -> float:

@@ -84,7 +84,7 @@ def _chance(fault: Fault, path: str, seed: int) -> np.random.Generator:
 def _struck(fault: Fault, time: np.ndarray, rng: np.random.Generator) -> Int[np.ndarray, " n"]:
     """Which measurements the fault strikes."""
     first, end = np.searchsorted(time, (fault.start_s, fault.end_s))
-    if fault.kind != "short":
+    if fault.kind != "spike":
         return np.arange(first, end)
     if fault.duration_s == 0:
         return np.arange(first, min(first + 1, len(time)))

@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from sensorfault.faults.fault import KINDS, OFFSETS, Fault, FaultError
+from sensorfault.faults.fault import KINDS, OFFSETS, SIZELESS, Fault, FaultError, current_kind
 from sensorfault.logs.table import Log
 
 # Sizes at which each kind is plain to see but not absurd: offsets in sigmas, drift in sigmas a second.
-SIZES = {"short": 10.0, "bias": 5.0, "drift": 0.5, "noise": 3.0, "scale": 2.0, "delay": 1.0, "jam": 0.0, "miss": 0.0}
+SIZES = {"spike": 10.0, "offset": 5.0, "drift": 0.5, "noise": 3.0, "scale": 2.0, "delay": 1.0}
+SIZES |= dict.fromkeys(SIZELESS, 0.0)
 
 
 def sweep(
@@ -23,12 +24,13 @@ def sweep(
         FaultError: an unknown kind.
         LogError: an unknown channel.
     """
+    kinds = [current_kind(kind) for kind in kinds]
     if unknown := [kind for kind in kinds if kind not in KINDS]:
         raise FaultError(f"Fault kind '{unknown[0]}' is unknown; take one of {', '.join(KINDS)}.")
     paths = [c.path for c in log.channels if c.watch] if channels is None else channels
     struck = [log.channels[log.index(path)] for path in paths]
     return tuple(
-        Fault(k, c.sensor, c.name, 0.0, 0.0 if k == "short" else duration_s, SIZES[k], sigmas=k in OFFSETS)
+        Fault(k, c.sensor, c.name, 0.0, 0.0 if k == "spike" else duration_s, SIZES[k], sigmas=k in OFFSETS)
         for k in kinds
         for c in struck
     )

@@ -82,11 +82,11 @@ def delay(s: Struck) -> Float[np.ndarray, " n"]:
 
 
 SHAPES: dict[str, Shape] = {
-    "short": offset,
-    "bias": offset,
+    "spike": offset,
+    "offset": offset,
     "drift": drift,
-    "jam": jam,
-    "miss": miss,
+    "frozen": jam,
+    "missing": miss,
     "noise": noise,
     "scale": scale,
     "delay": delay,

@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from typing import Any
 
 from sensorfault.faults.check import check_fault, check_onset, columns_of
-from sensorfault.faults.fault import KINDS, SIZELESS, Fault, FaultError
+from sensorfault.faults.fault import KINDS, SIZELESS, Fault, FaultError, current_kind
 from sensorfault.logs.table import Log
 
 FORM = "kind:sensor[.channel]:onset_s:duration_s[:magnitude[sigma]]"
 
 
 def parse_fault(text: str, log: Log | None = None) -> Fault:
-    """`"bias:gyro.z:120:20:5sigma"` -> a bias of five sigmas on gyro.z from 120 s for 20 s.
+    """`"offset:gyro.z:120:20:5sigma"` -> an offset of five sigmas on gyro.z from 120 s for 20 s.
 
     With `log`, the sensor, the channel and the onset are looked up too.
 
@@ -24,13 +24,14 @@ def parse_fault(text: str, log: Log | None = None) -> Fault:
     if len(parts) not in (4, 5):
         raise FaultError(f"Fault '{text}' has {len(parts)} parts; write {FORM}.")
     kind, where, onset, duration, size = (part.strip() for part in (*parts, "")[:5])
+    kind = current_kind(kind)
     sensor, _, channel = where.partition(".")
     if not sensor:
         raise FaultError(f"Fault '{text}' names no sensor; write {FORM}.")
     if not size and kind in KINDS and kind not in SIZELESS:
-        raise FaultError(f"Fault '{text}': a {kind} needs a magnitude; write {FORM}.")
+        raise FaultError(f"Fault '{text}': kind {kind} needs a magnitude; write {FORM}.")
     if size and kind in SIZELESS:
-        raise FaultError(f"Fault '{text}': a {kind} has no magnitude; leave out ':{size}'.")
+        raise FaultError(f"Fault '{text}': kind {kind} has no magnitude; leave out ':{size}'.")
     bare = re.sub(r"\s*(sigmas?|σ)$", "", size)
     fault = Fault(
         kind=kind,

@@ -155,10 +155,10 @@ class Framing:
         imu = value[:, : len(self.inertial)] if self.inertial else np.full((rows, 6), np.nan)
         return imu, value[:, lead - 1] if self.wheel else np.full(rows, np.nan), sky, new
 
-    def ends(self, heard: Bool[np.ndarray, " T"]) -> Any:
+    def ends(self, received: Bool[np.ndarray, " T"]) -> Any:
         """Rows with which an epoch ends."""
         ends, since = [], 0
-        for i, now in enumerate(heard):
+        for i, now in enumerate(received):
             since += 1
             if now or since == self.rows:
                 ends.append(i)
@@ -181,10 +181,10 @@ def framing(log: Log, satellites: tuple[str, ...], rates: bool, wheel: str = "")
     inertial = tuple(f"{sensor}.{axis}" for sensor in ("gyro", "accelerometer") for axis in "xyz")
     have = {channel.path for channel in log.channels}
     ranges = [i for i, channel in enumerate(log.channels) if channel.name == RANGE]
-    heard = np.flatnonzero((log.fresh[:, ranges] & np.isfinite(log.value[:, ranges])).any(axis=1))
-    if len(heard) < 2:
-        raise LogError(f"{log.name} has {len(heard)} epochs with a pseudorange; give a longer part of it.")
-    between = np.diff(heard)
+    received = np.flatnonzero((log.fresh[:, ranges] & np.isfinite(log.value[:, ranges])).any(axis=1))
+    if len(received) < 2:
+        raise LogError(f"{log.name} has {len(received)} epochs with a pseudorange; give a longer part of it.")
+    between = np.diff(received)
     usual = int(np.median(between))
     rows = 1 if usual == 1 else usual + max(2, usual // 20)
     return Framing(
@@ -194,7 +194,7 @@ def framing(log: Log, satellites: tuple[str, ...], rates: bool, wheel: str = "")
         rates,
         rows,
         log.period_s,
-        float(np.median(np.diff(log.time[heard]))),
+        float(np.median(np.diff(log.time[received]))),
     )
 
 

@@ -1,94 +1,46 @@
-"""Name -> recipe."""
+"""Name -> recipe. A recipe registers itself: any module in a family below that has a RECIPE, or RECIPES, is found."""
 
+from collections.abc import Iterator
+from importlib import import_module
+from pkgutil import iter_modules
+
+from sensorfault import methods
 from sensorfault.logs.table import LogError
-from sensorfault.methods.arm import arm_kalman, online_network
-from sensorfault.methods.composite import car, drone
-from sensorfault.methods.gnss import innovation_tests, lof_efd, rail
-from sensorfault.methods.height import (
-    cusum,
-    height_agreement,
-    kinematic_observer,
-    mean_pair,
-    multistep_observer,
-    ramp_glr,
-    slope,
-)
-from sensorfault.methods.inertial import (
-    bp_autoencoder,
-    elm_autoencoder,
-    elm_cross_validated,
-    elm_robust,
-    linear_conditioning,
-    pca,
-    relative_conditioning,
-)
-from sensorfault.methods.position import (
-    ar_predictor,
-    bicycle_kalman,
-    linear_extrapolation,
-    lstm_displacement,
-    lstm_predictor,
-    mlp_predictor,
-    motion_deficit,
-    persistence,
-    side_force,
-)
-from sensorfault.methods.ranging import (
-    anfis_cubature,
-    chi_square_cubature,
-    cooperative,
-    double_threshold,
-    logistic_cubature,
-)
 from sensorfault.methods.recipe import Recipe
+from sensorfault.runtime import former
 
-_RECIPES = (
-    elm_autoencoder.RECIPE,
-    elm_cross_validated.RECIPE,
-    elm_robust.RECIPE,
-    bp_autoencoder.RECIPE,
-    pca.RECIPE,
-    linear_conditioning.RECIPE,
-    relative_conditioning.RECIPE,
-    lstm_predictor.RECIPE,
-    lstm_displacement.RECIPE,
-    mlp_predictor.RECIPE,
-    ar_predictor.RECIPE,
-    persistence.RECIPE,
-    linear_extrapolation.RECIPE,
-    motion_deficit.RECIPE,
-    bicycle_kalman.RECIPE,
-    side_force.RECIPE,
-    car.RECIPE,
-    online_network.RECIPE,
-    arm_kalman.RECIPE,
-    multistep_observer.RECIPE,
-    kinematic_observer.RECIPE,
-    cusum.RECIPE,
-    ramp_glr.RECIPE,
-    slope.RECIPE,
-    mean_pair.RECIPE,
-    height_agreement.RECIPE,
-    drone.RECIPE,
-    *chi_square_cubature.RECIPES,
-    double_threshold.RECIPE,
-    *anfis_cubature.RECIPES,
-    logistic_cubature.RECIPE,
-    cooperative.RECIPE,
-    *innovation_tests.RECIPES,
-    lof_efd.RECIPE,
-    rail.RECIPE,
-)
-METHODS: dict[str, Recipe] = {recipe.name: recipe for recipe in _RECIPES}
-DEFAULT = relative_conditioning.RECIPE.name
+FAMILIES = ("inertial", "position", "height", "ranging", "gnss", "arm", "composite")  # as the catalog lists them
+DEFAULT = "relative-conditioning"
+
+
+def _recipes() -> Iterator[Recipe]:
+    families = [module.name for module in iter_modules(methods.__path__) if module.ispkg and module.name != "common"]
+    for family in sorted(families, key=lambda name: (*FAMILIES, name).index(name)):
+        package = import_module(f"{methods.__name__}.{family}")
+        for module in iter_modules(package.__path__, f"{package.__name__}."):
+            names = vars(import_module(module.name))
+            yield from names.get("RECIPES", (names["RECIPE"],) if "RECIPE" in names else ())
+
+
+def _by_name() -> dict[str, Recipe]:
+    found: dict[str, Recipe] = {}
+    for recipe in _recipes():
+        if recipe.name in found:
+            raise TypeError(f"two recipes are called {recipe.name}")
+        found[recipe.name] = recipe
+    return found
+
+
+METHODS = _by_name()
 
 
 def recipe(name: str) -> Recipe:
-    """The recipe of that name.
+    """The recipe of that name, or of a former one.
 
     Raises:
         LogError: there is none.
     """
-    if name not in METHODS:
+    found = METHODS.get(former.METHODS.get(name, name))
+    if found is None:
         raise LogError(f"no method is called '{name}'; take one of {', '.join(METHODS)}.")
-    return METHODS[name]
+    return found

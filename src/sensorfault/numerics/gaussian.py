@@ -29,7 +29,7 @@ def precision(cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> Float[Array
     return jnp.where(known[:, None] & known[None], -swept, 0.0)
 
 
-class Freed(NamedTuple):
+class BaardaW(NamedTuple):
     """How much of the squared distance e' S⁻¹ e of a Gaussian vector goes away when one component may be anything.
 
     `total` is the distance and `taken` what each component takes away, both over `largest`²: the largest component in
@@ -41,7 +41,7 @@ class Freed(NamedTuple):
     taken: Float[Array, " C"]
 
 
-def freed(value: Float[Array, " C"], cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> Freed:
+def baarda_w(value: Float[Array, " C"], cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> BaardaW:
     """Of the `known` components; the others are marginalised out and take nothing away."""
     own = jnp.eye(len(known))
     sigma = jnp.sqrt((own * cov).sum(axis=1))
@@ -54,4 +54,4 @@ def freed(value: Float[Array, " C"], cov: Float[Array, "C C"], known: Bool[Array
     total = jnp.maximum((e / largest * pull).sum(), 0.0)
     # (P e)_k^2 / P_kk
     taken = jnp.where(known, pull**2 / jnp.where(known, (own * p).sum(axis=1), 1.0), 0.0)
-    return Freed(largest, total, taken)
+    return BaardaW(largest, total, taken)

@@ -41,7 +41,7 @@ class Memory(NamedTuple):
         no, two = recent > 0, jnp.zeros((2, pairs))
         return cls(began, none, none, recent, no, no, past, past > 0, two, two > 0, none)
 
-    def heard(self, both: Bool[Array, " P"], difference: Float[Array, " P"]) -> "Memory":
+    def received(self, both: Bool[Array, " P"], difference: Float[Array, " P"]) -> "Memory":
         """With these differences in the beat."""
         return self._replace(
             total=jnp.where(both, self.total + difference, self.total), many=jnp.where(both, self.many + 1, self.many)

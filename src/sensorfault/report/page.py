@@ -14,7 +14,7 @@ from sensorfault.report.page_scores import scores
 from sensorfault.report.page_signals import signals
 from sensorfault.report.page_sketch import Sketch
 from sensorfault.report.page_verdicts import verdicts
-from sensorfault.report.page_words import SILENCE_ONLY, blind, event_table, facts, result, sentences, truth_table
+from sensorfault.report.page_words import SILENCE_ONLY, blind, event_table, facts, headline, sentences, truth_table
 from sensorfault.runtime.result import Detection
 
 TRUTH_LEGEND = (
@@ -42,7 +42,7 @@ def write_page(
         title: headline, the log's name by default.
         summary: how the limits came about, one sentence each.
     """
-    write_sketch(Sketch.of(detection.heard), path, truth, title, summary, detection.log.notes)
+    write_sketch(Sketch.of(detection.received), path, truth, title, summary, detection.log.notes)
 
 
 def write_sketch(
@@ -66,12 +66,12 @@ def _page(
     from plotly.offline import get_plotlyjs
 
     charts = figures(sketch, truth)
-    here = files("sensorfault.evaluation")
+    here = files("sensorfault.report")
     return Template(here.joinpath("page.html").read_text("utf-8")).substitute(
         title=escape(title or sketch.log.name),
         style=here.joinpath("page.css").read_text("utf-8"),
         facts=facts(sketch),
-        result=result(sketch),
+        headline=headline(sketch),
         notes=sentences("About the log", notes) + sentences("How the limits came about", summary),
         events=event_table(sketch),
         truth=truth_table(sketch, truth),

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from html import escape
 
 from sensorfault.events.event import Event
-from sensorfault.faults.fault import Fault
+from sensorfault.faults.fault import SIZELESS, Fault
 from sensorfault.report.page_sketch import MOTION, NAMELESS, Sketch
 
 GAP = "all (gap in the log)"
@@ -30,7 +30,7 @@ def _count(number: int, what: str) -> str:
     return f"{number or 'no'} {what}{'' if number == 1 else 's'}"
 
 
-def result(sketch: Sketch) -> str:
+def headline(sketch: Sketch) -> str:
     """The finding in one sentence."""
     kinds = [_accused(event) for event in sketch.events]
     named = {e.sensor for e in sketch.events if e.sensor is not None and e.subject == "sensor"}
@@ -59,7 +59,7 @@ def blind(sketch: Sketch) -> list[str]:
 def _accused(event: Event) -> str:
     if event.subject == "motion":
         return MOTION
-    return event.sensor or (GAP if event.kind == "miss" else NAMELESS)
+    return event.sensor or (GAP if event.kind == "missing" else NAMELESS)
 
 
 def facts(sketch: Sketch) -> str:
@@ -133,7 +133,7 @@ def event_table(sketch: Sketch) -> str:
     rows = []
     for i, e in enumerate(sketch.events, 1):
         against = "–" if e.peak_score is None else f"{number(e.peak_score)} / {number(e.limit)}"
-        against += " s silent" if e.kind == "miss" and e.peak_score is not None else ""
+        against += " s silent" if e.kind == "missing" and e.peak_score is not None else ""
         row = _row(e.start_s, e.end_s, end, (_accused(e), e.channel or "–", e.kind, against, e.method))
         rows.append(row.replace("<td", f"<td>{i}</td><td", 1))
     return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
@@ -148,7 +148,7 @@ def truth_table(sketch: Sketch, truth: Sequence[Fault]) -> str:
     for fault in sorted(truth, key=lambda f: f.start_s):
         event = match(fault, sketch.events)
         hits += event is not None
-        size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in ("jam", "miss") else "–"
+        size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in SIZELESS else "–"
         cells = (fault.sensor, fault.channel or "all", fault.kind, size, _outcome(fault, event))
         rows.append(_row(fault.start_s, fault.end_s, end, cells, "missed" if event is None else "hit"))
     text = f"{hits} of {len(truth)} found, counting any event on the same sensor that overlaps."

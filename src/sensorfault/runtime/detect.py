@@ -9,11 +9,11 @@ from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.table import Log
-from sensorfault.runtime.extractor import Follower, watch_of
+from sensorfault.runtime.extractor import EventExtractor, context_of
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Progress, replay_log
 from sensorfault.runtime.result import Detection, detected
-from sensorfault.runtime.runners import Now, Stepper, nothing_yet
+from sensorfault.runtime.runners import Stepper, StepResult, nothing_yet
 from sensorfault.runtime.tracker import Tracker
 
 
@@ -24,10 +24,10 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
         LogError: the log lacks a channel of the model, or ticks at another rate.
     """
     log = model.take(log)
-    told = replay_log(model.monitor, log, progress)
-    follower = Follower(model)
-    follower.take(log, told)
-    return detected(model, log, told, follower.events)
+    result = replay_log(model.monitor, log, progress)
+    extractor = EventExtractor(model)
+    extractor.take(log, result)
+    return detected(model, log, result, extractor.events)
 
 
 class Live:
@@ -45,7 +45,7 @@ class Live:
         framing = model.framing
         self._gather = Gather(framing) if framing else None
         self._step = Stepper(model.monitor, framing.nothing if framing else ())
-        self._watch = watch_of(model)
+        self._watch = context_of(model)
         self._tracker = Tracker(self._watch)
         held = {sensor.name: sensor.held for sensor in model.sensors}
         names = [channel.sensor for channel in model.channels]
@@ -57,7 +57,7 @@ class Live:
         self._time: float | None = None
         self._epoch: float | None = None  # when the last one ended
 
-    def push(self, time: float, value: Any, fresh: Any = None) -> Now:
+    def push(self, time: float, value: Any, fresh: Any = None) -> StepResult:
         """Judge one sample: `time` [s], rising; `value` in SI in the order of `model.inputs`, NaN if absent.
 
         `fresh` marks new measurements; left out, a held sensor is new when one of its channels has changed. Where the
@@ -85,7 +85,9 @@ class Live:
         self._now = self._judge(self._time, gap_s, cut.value[0], cut.fresh[0], block)
         return self._now
 
-    def _judge(self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()) -> Now:
+    def _judge(
+        self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()
+    ) -> StepResult:
         now = self._step.push(time, value, fresh, block)
         # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
         silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()

@@ -10,14 +10,14 @@ from sensorfault.events.event import Event
 from sensorfault.logs.table import Log
 from sensorfault.runtime.model import MOTION, TOGETHER, Model
 from sensorfault.runtime.replay import Replayed
-from sensorfault.runtime.runners import Now
-from sensorfault.runtime.tracker import QUIET_S, Tracker, Watch
+from sensorfault.runtime.runners import StepResult
+from sensorfault.runtime.tracker import QUIET_S, EventContext, Tracker
 
 
-def watch_of(model: Model) -> Watch:
+def context_of(model: Model) -> EventContext:
     """What a tracker must know of a model."""
     paths = [channel.path for channel in model.channels]
-    return Watch(
+    return EventContext(
         model.method,
         tuple(channel.sensor for channel in model.channels),
         tuple(channel.name for channel in model.channels),
@@ -33,11 +33,11 @@ def _examined(path: str | None, paths: list[str]) -> tuple[int, ...] | str | Non
     return path if path is None or path == MOTION else tuple(paths.index(one) for one in path.split(TOGETHER))
 
 
-class Follower:
+class EventExtractor:
     """Gathers the events of consecutive parts of one log."""
 
     def __init__(self, model: Model) -> None:
-        self._watch = watch_of(model)
+        self._watch = context_of(model)
         self._tracker = Tracker(self._watch)
         self._ended: list[Event] = []
         self._before_s = float("nan")  # the last row of the part before
@@ -48,16 +48,16 @@ class Follower:
         """All so far; those that go on have no end."""
         return sorted(self._ended + self._tracker.open(), key=lambda event: event.start_s)
 
-    def take(self, log: Log, told: Replayed) -> None:
+    def take(self, log: Log, result: Replayed) -> None:
         """A part with at least one row, and what was said of it."""
         first = float(log.time[0])
         gap_s = np.diff(log.time, prepend=first if np.isnan(self._before_s) else self._before_s)
         self._before_s = float(log.time[-1])
-        silent = (gap_s > self._watch.hole_s) | (np.asarray(told.silence) > self._watch.silent_after_s).any(axis=1)
-        marked = (np.asarray(told.sample) == FAULT) | (np.asarray(told.motion) == FAULT) | silent
-        arrays = _arrays(told)
+        silent = (gap_s > self._watch.hole_s) | (np.asarray(result.silence) > self._watch.silent_after_s).any(axis=1)
+        marked = (np.asarray(result.sample) == FAULT) | (np.asarray(result.motion) == FAULT) | silent
+        arrays = _arrays(result)
         for i in self._interesting(log.time, marked):
-            now = Now(*(array[i] for array in arrays))
+            now = StepResult(*(array[i] for array in arrays))
             self._ended += self._tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
 
     def _interesting(self, time: Float[np.ndarray, " T"], marked: Bool[np.ndarray, " T"]) -> Any:
@@ -70,9 +70,9 @@ class Follower:
         return np.flatnonzero(near)
 
 
-def _arrays(told: Replayed) -> list[Any]:
+def _arrays(result: Replayed) -> list[Any]:
     """What a `Now` holds, stacked over time."""
-    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
-    verdicts = told.channel, told.sensor, told.sample, told.motion
-    rest = told.value, told.residual, told.valid, told.silence
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (result.scores, result.limits))
+    verdicts = result.channel, result.sensor, result.sample, result.motion
+    rest = result.value, result.residual, result.valid, result.silence
     return [np.asarray(column) for column in (*verdicts, score, limit, *rest)]

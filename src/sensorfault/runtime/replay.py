@@ -102,7 +102,7 @@ def replay_on(
     total = len(log)
     if not total:
         raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
-    (monitor, state), told = _strong((monitor, state)), []
+    (monitor, state), result = _strong((monitor, state)), []
     long = EPOCHS if log.block else CHUNK
     for start in range(0, total, long):
         rows = np.minimum(np.arange(start, start + long), total - 1)
@@ -110,8 +110,8 @@ def replay_on(
         block = jax.tree.map(lambda array, rows=rows: array[rows], log.block)
         chunk = samples(log.time[rows], log.value[rows], log.fresh[rows], block)
         state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
-        told.append([np.asarray(part) for part in kept])
+        result.append([np.asarray(part) for part in kept])
         if progress:
             progress(min(1.0, (start + long) / total))
     example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
-    return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*told, strict=True)))
+    return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*result, strict=True)))

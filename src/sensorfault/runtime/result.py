@@ -47,7 +47,7 @@ class Detection:
     events: tuple[Event, ...]
 
     @property
-    def heard(self) -> "Detection":
+    def received(self) -> "Detection":
         """Of a log of epochs, without the satellites that never rose."""
         kept = np.isfinite(self.log.value).any(axis=0)
         if not self.log.block or kept.all() or not kept.any():
@@ -64,26 +64,26 @@ class Detection:
         )
 
 
-def detected(model: Model, log: Log, told: Replayed, events: Iterable[Event]) -> Detection:
+def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) -> Detection:
     """What a model's monitor said of every row of a log it has taken, and the events in it."""
-    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(told.channel) == FAULT)
-    lost = ~np.asarray(told.believed) & doubtful
+    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(result.channel) == FAULT)
+    lost = ~np.asarray(result.believed) & doubtful
     return Detection(
         log=log,
         method=model.method,
         watched=model.watched,
-        channel=np.asarray(told.channel),
-        sensor=np.asarray(told.sensor),
-        sample=np.asarray(told.sample),
-        motion=np.asarray(told.motion),
-        repaired=np.where(lost, np.nan, np.asarray(told.value)),
-        traces=_traces(model, told),
+        channel=np.asarray(result.channel),
+        sensor=np.asarray(result.sensor),
+        sample=np.asarray(result.sample),
+        motion=np.asarray(result.motion),
+        repaired=np.where(lost, np.nan, np.asarray(result.value)),
+        traces=_traces(model, result),
         events=tuple(events),
     )
 
 
-def _traces(model: Model, told: Replayed) -> tuple[Trace, ...]:
-    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (told.scores, told.limits))
+def _traces(model: Model, result: Replayed) -> tuple[Trace, ...]:
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (result.scores, result.limits))
     return tuple(
         Trace(name, channel, score[:, k], limit[:, k])
         for k, (name, channel) in enumerate(model.tests)

@@ -66,7 +66,7 @@ def fleet(
     return jax.vmap(lambda state, one: replay(monitor, state, one, keep))(states, rows)
 
 
-class Now(NamedTuple):
+class StepResult(NamedTuple):
     """What a live step says of the sample it was just given."""
 
     channel: Int8[np.ndarray, " C"]
@@ -81,12 +81,12 @@ class Now(NamedTuple):
     silence: Float[np.ndarray, " C"]  # [s]
 
 
-def nothing_yet(monitor: Monitor) -> Now:
+def nothing_yet(monitor: Monitor) -> StepResult:
     """What is known before the first sample."""
     channels, sensors = len(monitor.owner), max(monitor.owner) + 1
     unknown = np.full(channels, UNKNOWN, np.int8), np.full(sensors, UNKNOWN, np.int8)
     nan, none = np.full(channels, np.nan), np.full(0, np.nan)
-    return Now(*unknown, UNKNOWN, UNKNOWN, none, none, nan, nan, np.zeros(channels, bool), np.zeros(channels))
+    return StepResult(*unknown, UNKNOWN, UNKNOWN, none, none, nan, nan, np.zeros(channels, bool), np.zeros(channels))
 
 
 def _tell(report: Report) -> tuple[Array, ...]:
@@ -141,13 +141,13 @@ class Stepper:
 
         self._step = jax.jit(step, donate_argnums=0)
         self._state, _ = self._step(self._state, np.zeros_like(self._row))  # compile; no round changes nothing
-        told = jax.eval_shape(
+        result = jax.eval_shape(
             lambda flat, row: _tell(monitor.step(restore(flat), unpack(row))[1]), self._state, self._row
         )
-        ends = np.cumsum([int(np.prod(one.shape)) for one in told]).tolist()
+        ends = np.cumsum([int(np.prod(one.shape)) for one in result]).tolist()
         self._cuts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True)]
 
-    def push(self, time: float, value: Any, fresh: Any = True, block: Any = (), born: Any = False) -> Now:
+    def push(self, time: float, value: Any, fresh: Any = True, block: Any = (), born: Any = False) -> StepResult:
         """Judge one sample: `time` [s], `value` (C,) in SI with NaN for what is absent; `fresh`, `born` (C,) or one.
 
         Raises:
@@ -165,10 +165,10 @@ class Stepper:
             raise ValueError(f"push: a block of {size} numbers where the example had {tail.size}; give all of it.")
         if parts:
             tail[:] = np.concatenate(parts)
-        self._state, told = self._step(self._state, row)
-        answer = np.asarray(told)
+        self._state, result = self._step(self._state, row)
+        answer = np.asarray(result)
         channel, sensor, sample, motion, score, limit, value, residual, valid, silence = (
             answer[cut] for cut in self._cuts
         )
         verdicts = channel.astype(np.int8), sensor.astype(np.int8), int(sample[0]), int(motion[0])
-        return Now(*verdicts, score, limit, value, residual, valid > 0, silence)
+        return StepResult(*verdicts, score, limit, value, residual, valid > 0, silence)

@@ -21,8 +21,9 @@ from sensorfault.core.monitor import Monitor
 from sensorfault.core.types import Sample
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Channel, LogError, Sensor
+from sensorfault.runtime import former
 from sensorfault.runtime.model import Model, owners
-from sensorfault.runtime.registry import PARTS
+from sensorfault.runtime.registry import parts
 
 FORMAT = 1
 Tensors = dict[str, np.ndarray]
@@ -87,7 +88,7 @@ def load(path: Path | str) -> Model:
         if not isinstance(monitor, Monitor):
             raise TypeError("it holds no monitor")
         model = Model(
-            header["method"],
+            former.METHODS.get(header["method"], header["method"]),
             monitor,
             tuple(Channel(**channel) for channel in header["channels"]),
             tuple(Sensor(**sensor) for sensor in header["sensors"]),
@@ -116,18 +117,18 @@ def _try(model: Model) -> None:
     none = jnp.zeros(channels, bool)
     block = jax.tree.map(jnp.asarray, model.framing.nothing) if model.framing else ()
     sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none, block)
-    after, told = jax.eval_shape(lambda: model.monitor.step(model.monitor.init(), sample))
+    after, result = jax.eval_shape(lambda: model.monitor.step(model.monitor.init(), sample))
     before = jax.eval_shape(model.monitor.init)
     if jax.tree.map(jnp.shape, after) != jax.tree.map(jnp.shape, before):
         raise ValueError("a step changes the shape of its state")
-    if sum(score.value.shape[0] for score in told.scores) != len(model.tests):
+    if sum(score.value.shape[0] for score in result.scores) != len(model.tests):
         raise ValueError("its tests are not as many as their names")
 
 
-def _framing(told: dict[str, Any] | None) -> Framing | None:
-    if told is None:
+def _framing(header: dict[str, Any] | None) -> Framing | None:
+    if header is None:
         return None
-    fields: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in told.items()}
+    fields: dict[str, Any] = {name: tuple(one) if isinstance(one, list) else one for name, one in header.items()}
     return Framing(**fields)
 
 
@@ -148,6 +149,11 @@ def _digest(text: str, tensors: Tensors) -> str:
 def _encode(thing: Any, name: str, tensors: Tensors) -> Any:
     """A part as JSON, its arrays put aside under their path in the tree."""
     match thing:
+        case eqx.Module() if parts().get(type(thing).__name__) is not type(thing):
+            raise TypeError(
+                f"{name}: 'load' would not know {type(thing).__qualname__}; put the class into a module of stages, "
+                "vehicles or numerics"
+            )
         case eqx.Module():
             inner = {f.name: _encode(getattr(thing, f.name), f"{name}.{f.name}", tensors) for f in fields(thing)}
             return {"part": type(thing).__name__, "fields": inner}
@@ -164,13 +170,17 @@ def _encode(thing: Any, name: str, tensors: Tensors) -> Any:
             raise TypeError(f"{name}: a {type(thing).__name__} cannot be stored; make it an array, number or name")
 
 
-def _decode(told: Any, tensors: Tensors) -> Any:
-    match told:
+def _decode(header: Any, tensors: Tensors) -> Any:
+    match header:
         case {"tensor": name}:
             return jnp.asarray(tensors[name])
         case {"part": part, "fields": inner}:
-            return PARTS[part](**{field: _decode(one, tensors) for field, one in inner.items()})
+            return _part(part)(**{field: _decode(one, tensors) for field, one in inner.items()})
         case list():
-            return tuple(_decode(one, tensors) for one in told)
+            return tuple(_decode(one, tensors) for one in header)
         case _:
-            return told
+            return header
+
+
+def _part(name: str) -> type[eqx.Module]:
+    return parts()[former.PARTS.get(name, name)]

@@ -10,7 +10,7 @@ from sensorfault.events.event import Event
 from sensorfault.logs.parts import read_parts
 from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
-from sensorfault.runtime.extractor import Follower
+from sensorfault.runtime.extractor import EventExtractor
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import replay_on
 from sensorfault.runtime.result import Detection, detected
@@ -56,7 +56,7 @@ def detect_long(
     early: list[Log] = []
     fitted_on_s, read = None, 0.0
 
-    def heard(share: float) -> None:
+    def received(share: float) -> None:
         nonlocal read
         read = share
         tell(share)
@@ -81,12 +81,12 @@ def detect_long(
         judging = _Judging(_taken(fit(log.between(end_s=cut_s)), path), see, share * rows / len(log))
         judging.take(log.between(cut_s), share)
 
-    said = read_parts(path, take, vehicle, heard)
+    said = read_parts(path, take, vehicle, received)
     if judging is None:
         begin(1.0)
     assert judging is not None
     assert judging.ends is not None
-    events = tuple(judging.follower.events)
+    events = tuple(judging.extractor.events)
     return LongDetection(judging.ends, judging.model, judging.rows, events, said.notes, fitted_on_s)
 
 
@@ -102,7 +102,7 @@ class _Judging:
     """The monitor's state between two parts."""
 
     def __init__(self, model: Model, see: Callable[[Detection, float], None] | None, read: float = 0.0) -> None:
-        self.model, self.follower = model, Follower(model)
+        self.model, self.extractor = model, EventExtractor(model)
         self.ends: Log | None = None  # the first row and the last
         self.rows = 0
         self._see, self._read = see, read
@@ -112,11 +112,11 @@ class _Judging:
         """The next part; `read`: the share of the file that has been."""
         log = self.model.take(part)
         self.ends = _joined([_row(self.ends or log, 0), _row(log, -1)])
-        self._state, told = replay_on(self.model.monitor, self._state, log)
-        self.follower.take(log, told)
+        self._state, result = replay_on(self.model.monitor, self._state, log)
+        self.extractor.take(log, result)
         self.rows += len(log)
         if self._see is not None:
-            self._see(detected(self.model, log, told, self.follower.events), read - self._read)
+            self._see(detected(self.model, log, result, self.extractor.events), read - self._read)
             self._read = read
 
 

@@ -6,17 +6,17 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.core.types import FAULT
-from sensorfault.events.classifier import Shape
+from sensorfault.events.classifier import FaultClassifier
 from sensorfault.events.event import Event
 from sensorfault.runtime.model import MOTION, TOGETHER
-from sensorfault.runtime.runners import Now
+from sensorfault.runtime.runners import StepResult
 
 QUIET_S = 2.0  # alarms of one channel closer than this are one event
 GAP_S = 1.0  # a shorter hole in the log is the recorder's jitter, not a fault
 
 
 @dataclass(frozen=True)
-class Watch:
+class EventContext:
     """What the tracker must know of a model, channel by channel.
 
     `tests[k]`: the columns that test k accuses, one or all of them together; None for a test that finds out whom,
@@ -43,7 +43,7 @@ class Watch:
 class _Open:
     start_s: float
     last_s: float
-    shape: Shape = field(default_factory=Shape)
+    classifier: FaultClassifier = field(default_factory=FaultClassifier)
     since: list[tuple[float, float, float]] = field(default_factory=list)  # measurements after the last accusation
     score: float = float("nan")
     limit: float = float("nan")
@@ -82,7 +82,7 @@ def _about(test: tuple[int, ...] | str | None, accused: _Accused) -> bool:
 class Tracker:
     """Turns one row after the other into events. A healthy row while nothing is open changes nothing."""
 
-    def __init__(self, watch: Watch) -> None:
+    def __init__(self, watch: EventContext) -> None:
         self._watch = watch
         self._open: dict[_Accused, _Open] = {}
         self._silent: dict[tuple[str, str | None], _Open] = {}
@@ -93,7 +93,7 @@ class Tracker:
         accused = [test for test in watch.tests if isinstance(test, tuple) and len(test) > 1]
         self._groups = dict.fromkeys([*(tuple(channels) for channels in self._of.values()), *accused])
 
-    def push(self, time: float, gap_s: float, measured: Float[np.ndarray, " C"], now: Now) -> list[Event]:
+    def push(self, time: float, gap_s: float, measured: Float[np.ndarray, " C"], now: StepResult) -> list[Event]:
         """The events that this sample brought to an end.
 
         `time` [s]; `gap_s` since the sample before; `measured` as it came [SI]; `now` what the monitor said of it.
@@ -112,7 +112,7 @@ class Tracker:
         """Whether an event is open, so that the next row matters whatever its verdict."""
         return bool(self._open or self._silent)
 
-    def _faults(self, time: float, measured: Float[np.ndarray, " C"], now: Now) -> list[Event]:
+    def _faults(self, time: float, measured: Float[np.ndarray, " C"], now: StepResult) -> list[Event]:
         over = {c: one for c, one in self._open.items() if time - one.last_s > QUIET_S}
         for c in over:
             del self._open[c]
@@ -130,35 +130,35 @@ class Tracker:
                 continue
             one.since.append((time, float(measured[c]), float(now.residual[c])))
             if c in accused:
-                one.shape.take(one.since)
+                one.classifier.take(one.since)
                 one.since.clear()
         return self._together([_Ended(c, one, self._fault(c, one, one.last_s)) for c, one in over.items()])
 
     def _together(self, found: list[_Ended]) -> list[Event]:
         """One event for channels that a test accuses together, and for a sensor of which all showed the same kind."""
-        told = [ended.event for ended in found]
+        result = [ended.event for ended in found]
         for group in self._groups:
             mine = [ended for ended in found if ended.accused in group]
             sensor = len(group) == len(self._of[self._watch.sensor[group[0]]])
             same = sensor and len({ended.event.kind for ended in mine}) == 1
             alike = group in self._watch.tests and len({(e.event.start_s, e.open.last_s) for e in mine}) == 1
             if len(mine) == len(group) > 1 and (alike or same):
-                told = [event for event in told if not any(event is ended.event for ended in mine)]
-                told.append(self._one(mine, sensor))
-        return told
+                result = [event for event in result if not any(event is ended.event for ended in mine)]
+                result.append(self._one(mine, sensor))
+        return result
 
     def _one(self, mine: list[_Ended], sensor: bool) -> Event:
         """The event of several channels of one sensor, or of all of it: its kind is that of the clearest."""
         worst = max(mine, key=lambda ended: ended.excess).event
-        clearest = max(mine, key=lambda ended: ended.open.shape.size / float(self._watch.sigma[ended.column]))
+        clearest = max(mine, key=lambda ended: ended.open.classifier.size / float(self._watch.sigma[ended.column]))
         return replace(
             worst,
             start_s=min(ended.event.start_s for ended in mine),
             channel=None if sensor else TOGETHER.join(self._watch.channel[ended.column] for ended in mine),
-            kind="jam" if any(ended.event.kind == "jam" for ended in mine) else clearest.event.kind,
+            kind="frozen" if any(ended.event.kind == "frozen" for ended in mine) else clearest.event.kind,
         )
 
-    def _peak(self, c: _Accused, one: _Open, now: Now) -> None:
+    def _peak(self, c: _Accused, one: _Open, now: StepResult) -> None:
         """The largest excess of a joint test, or of one on this channel; of the motion's own tests if it is that."""
         mine = np.array([_about(test, c) for test in self._watch.tests])
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -174,7 +174,7 @@ class Tracker:
         if not isinstance(c, int):
             subject = "motion" if c == MOTION else "sensor"
             return Event(one.start_s, end_s, subject, None, None, "unknown", score, limit, watch.method)
-        kind = one.shape.kind(float(watch.period_s[c]), float(watch.sigma[c]))
+        kind = one.classifier.kind(float(watch.period_s[c]), float(watch.sigma[c]))
         sensor, channel = watch.sensor[c], watch.channel[c]
         return Event(one.start_s, end_s, "sensor", sensor, channel, kind, score, limit, watch.method)
 
@@ -207,7 +207,7 @@ class Tracker:
             one.last_s, one.score = time, lasts
         longest = max(GAP_S, float(self._watch.silent_after_s.max()))
         if gap_s > longest:
-            gap = time - gap_s, time, "sensor", None, None, "miss", gap_s, longest, self._watch.method
+            gap = time - gap_s, time, "sensor", None, None, "missing", gap_s, longest, self._watch.method
             ended.append(Event(*gap))
         return ended
 
@@ -219,4 +219,4 @@ class Tracker:
 
     def _miss(self, name: tuple[str, str | None], one: _Open, end_s: float | None) -> Event:
         sensor, channel = name
-        return Event(one.start_s, end_s, "sensor", sensor, channel, "miss", one.score, one.limit, self._watch.method)
+        return Event(one.start_s, end_s, "sensor", sensor, channel, "missing", one.score, one.limit, self._watch.method)

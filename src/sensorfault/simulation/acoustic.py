@@ -33,10 +33,10 @@ class Heard:
     """Of each of L leaders: where it is and says it is, north, east, down [m]; and the range to it [m]."""
 
     position: Float[np.ndarray, "T L 3"]
-    told: Float[np.ndarray, "T L 3"]
+    result: Float[np.ndarray, "T L 3"]
     true: Float[np.ndarray, "T L"]
     range: Float[np.ndarray, "T L"]
-    heard: Bool[np.ndarray, "T L"]
+    received: Bool[np.ndarray, "T L"]
 
 
 def hear(
@@ -46,14 +46,14 @@ def hear(
     on_path, on_time, on_error = rng.spawn(3)
     position = np.stack([_beside(time, follower, j, way.leaders, on_path) for j in range(way.leaders)], axis=1)
     true = np.linalg.norm(position - follower[:, None], axis=2)
-    heard = _schedule(time, way, on_time)
+    received = _schedule(time, way, on_time)
     draw = way.noise or (lambda rng, n: way.sigma_m * rng.standard_normal(n))
     error = draw(on_error, true.size).reshape(true.shape)
     echo = on_error.random(true.shape) < way.outliers
     error = error + echo * way.outlier_m * on_error.random(true.shape)
-    told = position.copy()
-    told[:, :, :2] += LEADER_SD * on_error.standard_normal(told[:, :, :2].shape)
-    return Heard(position, told, true, true / way.sound + error, heard)
+    result = position.copy()
+    result[:, :, :2] += LEADER_SD * on_error.standard_normal(result[:, :, :2].shape)
+    return Heard(position, result, true, true / way.sound + error, received)
 
 
 def _beside(
@@ -72,11 +72,11 @@ def _beside(
 
 def _schedule(time: Float[np.ndarray, " T"], way: Ranging, rng: np.random.Generator) -> Bool[np.ndarray, "T L"]:
     """At which ticks a range to which leader arrives."""
-    heard = np.zeros((len(time), way.leaders), bool)
+    received = np.zeros((len(time), way.leaders), bool)
     for j in range(way.leaders):
         first = j * way.period_s / way.leaders if way.alternating else rng.uniform(0, way.period_s)
         times = np.arange(time[0] + first + 1e-3, time[-1], way.period_s)
         times = times + rng.uniform(-0.2, 0.2, len(times)) * way.period_s / way.leaders
         at = np.searchsorted(time, times[rng.random(len(times)) >= way.lost])
-        heard[np.clip(at, 0, len(time) - 1), j] = True
-    return heard
+        received[np.clip(at, 0, len(time) - 1), j] = True
+    return received

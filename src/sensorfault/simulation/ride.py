@@ -61,17 +61,17 @@ def recorded(
         error: of the pseudoranges [m], NaN where a satellite was not received.
         rate_error: of the range rates [m/s].
     """
-    heard = np.isfinite(error)
+    received = np.isfinite(error)
     offset, drift = clock[epochs, :1], clock[epochs, 1:]
     doppler = -(sky.rate + drift + rate_error) * L1_HZ / LIGHT_M_S
-    told = np.concatenate(
+    result = np.concatenate(
         [np.stack([sky.range + offset + error, doppler, sky.elevation], axis=2), sky.position, sky.velocity], axis=2
     )
-    told = np.where(heard[..., None], told, np.nan)
+    result = np.where(received[..., None], result, np.nan)
     width = len(sky.names) * len(_TOLD)
     value = np.full((len(time), len(INERTIAL) + width), np.nan)
     value[:, : len(INERTIAL)] = inertial
-    value[epochs, len(INERTIAL) :] = told.reshape(len(epochs), width)
+    value[epochs, len(INERTIAL) :] = result.reshape(len(epochs), width)
     tick_s, epoch_s = float(np.median(np.diff(time))), float(np.median(np.diff(time[epochs])))
     return Log(
         time=time,

@@ -99,24 +99,24 @@ def mission(
     name: str = "mission",
 ) -> Mission:
     """The log of a follower on this path whose Doppler log and compass said that; the leaders are simulated."""
-    heard = hear(path.time, path.position, ranging, on_leaders)
+    received = hear(path.time, path.position, ranging, on_leaders)
     n = len(path.time)
     place = path.position[:, :2] + GPS_SD * on_sensors.standard_normal((n, 2))
     depth = path.position[:, 2] + DEPTH_SD * on_sensors.standard_normal(n)
     heading = np.mod(said[:, 2], 2 * np.pi)
-    value = np.column_stack([geodetic(place), said[:, :2], heading, depth, _leaders(heard.told, heard.range)])
+    value = np.column_stack([geodetic(place), said[:, :2], heading, depth, _leaders(received.result, received.range)])
     true = np.column_stack(
         [
             geodetic(path.position[:, :2]),
             path.velocity,
             np.mod(path.heading, 2 * np.pi),
             path.position[:, 2],
-            _leaders(heard.position, heard.true),
+            _leaders(received.position, received.true),
         ]
     )
     fresh = np.ones(value.shape, bool)
     fresh[:, :2] = (path.time <= path.time[0] + surface_s)[:, None]
-    fresh[:, len(FOLLOWER) :] = np.repeat(heard.heard, 4, axis=1)
+    fresh[:, len(FOLLOWER) :] = np.repeat(received.received, 4, axis=1)
     log = Log(path.time, np.where(fresh, value, np.nan), fresh, _channels(ranging), _sensors(ranging), name)
     return Mission(log, replace(log, value=true, fresh=np.ones_like(fresh), name=f"{name}, truth"), path)
 
@@ -148,8 +148,8 @@ def _names(ranging: Ranging) -> list[str]:
 
 
 def _channels(ranging: Ranging) -> tuple[Channel, ...]:
-    told = (("range", "m", True), ("latitude", "deg", False), ("longitude", "deg", False), ("depth", "m", False))
-    return (*FOLLOWER, *(Channel(what, name, unit, watch) for name in _names(ranging) for what, unit, watch in told))
+    result = (("range", "m", True), ("latitude", "deg", False), ("longitude", "deg", False), ("depth", "m", False))
+    return (*FOLLOWER, *(Channel(what, name, unit, watch) for name in _names(ranging) for what, unit, watch in result))
 
 
 def _sensors(ranging: Ranging) -> tuple[Sensor, ...]:

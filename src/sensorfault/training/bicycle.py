@@ -192,7 +192,7 @@ def _push(log: Log, found: Roles) -> tuple[Float[np.ndarray, "3"], float]:
 
 
 @jax.jit
-def told(
+def open_loop(
     filter: BicycleKalman, rows: Sample
 ) -> tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"], Float[Array, "T C"]]:
     """What a filter that trusts everything makes of a log.
@@ -234,7 +234,7 @@ def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
 
     @jax.jit
     def loss(x: Float[Array, "11"]) -> Float[Array, ""]:
-        e, sigma, there, _ = told(made(x), rows)
+        e, sigma, there, _ = open_loop(made(x), rows)
         there = there & warm[:, None]
         z = jnp.abs(jnp.where(there, e / sigma, 0.0))
         # -2 ln p = ln S + z², with Huber's 2 k |z| - k² beyond k
@@ -275,7 +275,7 @@ def _first(log: Log, found: Roles) -> float:
 def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
     """Root mean square of each normalised innovation, without the start and the largest two of a thousand."""
     rows = samples(log.time, log.value, log.fresh)
-    e, sigma, there, _ = (np.asarray(x) for x in told(filter, rows))
+    e, sigma, there, _ = (np.asarray(x) for x in open_loop(filter, rows))
     late = log.time > log.time[0] + WARM_S
     spread = np.ones(e.shape[1])
     for k in range(len(spread)):
@@ -290,4 +290,4 @@ def normalised(filter: BicycleKalman, log: Log) -> Float[np.ndarray, "T C"]:
     """e / √S of each channel, NaN where nothing was measured or the filter had not begun."""
 
     rows = samples(log.time, log.value, log.fresh)
-    return np.asarray(told(filter, rows)[3])
+    return np.asarray(open_loop(filter, rows)[3])

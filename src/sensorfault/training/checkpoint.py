@@ -42,9 +42,9 @@ class Checkpoint:
         if self.path is None:
             return
         tensors = {str(i): np.asarray(leaf) for i, leaf in enumerate(jax.tree.leaves(now))}
-        told = {"learned": np.array(learned), "validated": np.array(validated)}
+        result = {"learned": np.array(learned), "validated": np.array(validated)}
         with appearing(self.path) as temporary:
-            save_file(tensors | told, temporary, {"format": FORMAT, "training": self.training})
+            save_file(tensors | result, temporary, {"format": FORMAT, "training": self.training})
 
     def resumed(self, now: Tree) -> tuple[Tree, list[float], list[float]]:
         """The training as it was last written, or `now` and no errors if it never was.

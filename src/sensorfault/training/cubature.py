@@ -56,5 +56,5 @@ def _loss(report: Report) -> Float[Array, ""]:
     s = jnp.diagonal(residual.cov)
     # -2 log p = log S + (ν + 1) log(1 + r² / ν S)
     loss = jnp.log(s) + (HEAVY + 1) * jnp.log1p(residual.value**2 / (HEAVY * s))
-    told = residual.valid & (residual.noise < UNTOLD * s)  # an exact repeat, which has no weight, says nothing
-    return jnp.where(told, loss, 0.0).sum()
+    result = residual.valid & (residual.noise < UNTOLD * s)  # an exact repeat, which has no weight, says nothing
+    return jnp.where(result, loss, 0.0).sum()

@@ -34,8 +34,8 @@ def fit_deficit(part: MotionDeficit, log: Log) -> MotionDeficit:
 
 def fit_velocity(part: VelocityDeficit, log: Log) -> VelocityDeficit:
     """With the mean square of the slip on a healthy drive."""
-    told = extra_tape(part, log)
-    slip = told.slip[told.ready]
+    result = extra_tape(part, log)
+    slip = result.slip[result.ready]
     variance = (slip**2).mean(axis=0) if len(slip) else np.ones(2)
     fitted: VelocityDeficit = eqx.tree_at(lambda p: p.variance, part, jnp.asarray(np.maximum(variance, FINEST_M_S**2)))
     return fitted
@@ -54,14 +54,16 @@ def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[
         channels=part.channels,
         slots=SLOTS,
     )
-    told = extra_tape(wide, log)
-    ready = told.ready
+    result = extra_tape(wide, log)
+    ready = result.ready
     if not ready.any():
         return np.array([FINEST_M**2, 0.0, 0.0, 0.0])
-    square = (told.deficit[ready] ** 2).sum(axis=1)
-    terms = np.stack([np.ones_like(square), told.swing[ready] ** 2, told.path[ready] ** 2, told.age[ready] ** 2], 1)
+    square = (result.deficit[ready] ** 2).sum(axis=1)
+    terms = np.stack(
+        [np.ones_like(square), result.swing[ready] ** 2, result.path[ready] ** 2, result.age[ready] ** 2], 1
+    )
     # a square scatters in proportion to its own expectation; what is far below the usual is no finer a measure
-    usual = max(square[told.age[ready] < 2 * ages[0]].mean(), FINEST_M**2)
+    usual = max(square[result.age[ready] < 2 * ages[0]].mean(), FINEST_M**2)
     weight = np.ones(len(square))
     law = np.zeros(4)
     for _ in range(10):

@@ -78,8 +78,8 @@ def _told(filter: HeightKalman, rows: Sample) -> tuple[Array, Array, Array]:
         trust = Trust(sample.value, sample.fresh, sample.fresh & False, sample.fresh, sample.born)
         return filter.update(pending, trust), (residual.value, residual.cov, residual.valid)
 
-    told: tuple[Array, Array, Array] = lax.scan(one, filter.init(), rows)[1]
-    return told
+    result: tuple[Array, Array, Array] = lax.scan(one, filter.init(), rows)[1]
+    return result
 
 
 def _pushed(fixes: Fixes, measured: bool, r: Float[np.ndarray, " O"]) -> float:

@@ -12,18 +12,18 @@ from sensorfault.training.labelled import Labelled
 SIZES = (25, 50, 100, 200, 400)
 
 Answer = Callable[[Float[np.ndarray, "M F"]], Float[np.ndarray, " M"]]
-Told = TypeVar("Told")
+Result = TypeVar("Result")
 
 
 def learning_curve(
     fit: Callable[[Labelled], Answer],
-    judge: Callable[[Float[np.ndarray, " M"], Float[np.ndarray, " M"]], Told],
+    judge: Callable[[Float[np.ndarray, " M"], Float[np.ndarray, " M"]], Result],
     learn: Labelled,
     test: Labelled,
     sizes: Sequence[int] = SIZES,
     draws: int = 5,
     seed: int = 0,
-) -> list[tuple[int, Told]]:
+) -> list[tuple[int, Result]]:
     """Each size, the least first, and judge(answers, targets) on the test rows of what so many rows teach.
 
     Rows are drawn by chance, those of one size among those of the next, so that a curve shows what more rows add.
@@ -35,7 +35,7 @@ def learning_curve(
     rows = len(learn.target)
     if max(sizes) > rows:
         raise LogError(f"{rows} labelled rows are fewer than {max(sizes)}; give more, or learn from fewer.")
-    told = list[tuple[int, Told]]()
+    result = list[tuple[int, Result]]()
     for d in range(draws):
         order = np.random.default_rng((seed, d)).permutation(rows)
         for size in sizes:
@@ -44,5 +44,5 @@ def learning_curve(
                 answer = fit(Labelled(learn.features[part], learn.target[part]))
             except LogError:
                 continue
-            told.append((size, judge(answer(test.features), test.target)))
-    return sorted(told, key=lambda one: one[0])
+            result.append((size, judge(answer(test.features), test.target)))
+    return sorted(result, key=lambda one: one[0])

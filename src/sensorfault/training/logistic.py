@@ -41,9 +41,9 @@ def fit_logistic(
 
     def cost(w: Float[np.ndarray, " n"]) -> tuple[float, Float[np.ndarray, " n"]]:
         # Σ ln(1 + e^(∓ w x)) + |w|² / 2c
-        told = sign * (x @ w)
-        value = np.logaddexp(0, -told).sum() + (penalty * w**2).sum() / 2
-        return float(value), penalty * w - x.T @ (sign * expit(-told))
+        result = sign * (x @ w)
+        value = np.logaddexp(0, -result).sum() + (penalty * w**2).sum() / 2
+        return float(value), penalty * w - x.T @ (sign * expit(-result))
 
     def bend(w: Float[np.ndarray, " n"]) -> Float[np.ndarray, "n n"]:
         p = expit(x @ w)

@@ -100,8 +100,8 @@ def train_steps(
         return StepNetwork(w, b, v, c, c0, h0, u0, p0, fixes.columns)
 
     nets = tuple(tuple(net(s * len(steps) + m) for m in range(len(steps))) for s in range(len(seeds)))
-    told = np.asarray(loss, float).T.reshape(len(seeds), len(steps), -1)
-    return Trained(nets, told)
+    result = np.asarray(loss, float).T.reshape(len(seeds), len(steps), -1)
+    return Trained(nets, result)
 
 
 def _f32(x: Any) -> Float32[Array, "..."]:
@@ -141,9 +141,9 @@ def _trained(data: Windowed, start: Weights, schedule: Schedule) -> tuple[Weight
         loss = errors.mean(axis=0)
         better = loss < now.best
         since = jnp.where(better, 0, now.since + 1)
-        told = now.loss.at[now.epoch].set(jnp.where(now.going, loss, jnp.nan))
+        result = now.loss.at[now.epoch].set(jnp.where(now.going, loss, jnp.nan))
         going = now.going & (since < schedule.patience)
-        return _Now(weights, adam, jnp.minimum(loss, now.best), since, going, told, now.epoch + 1)
+        return _Now(weights, adam, jnp.minimum(loss, now.best), since, going, result, now.epoch + 1)
 
     end = lax.while_loop(
         lambda now: now.going.any() & (now.epoch < schedule.epochs),

@@ -24,7 +24,7 @@ from sensorfault.vehicles.underwater import Follower
 EVERY_S = 120.0  # one fault on each leader in so long
 LONGEST_S = (20.0, 70.0)
 BIAS, DRIFT = (3.0, 10.0), (0.1, 0.25)  # in standard deviations of a range; a second
-KINDS = ("jam", "jam", "drift", "bias")
+KINDS = ("frozen", "frozen", "drift", "offset")
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ def surfaced(log: Log, vehicle: Follower) -> Float[np.ndarray, "T L"]:
 
 
 def _by_fix(vehicle: Follower, sample: Sample) -> Float[Array, " L"]:
-    told = vehicle.expected(vehicle.start(sample)[0], sample)
-    return jnp.where(vehicle.ready(sample), told, jnp.nan)
+    result = vehicle.expected(vehicle.start(sample)[0], sample)
+    return jnp.where(vehicle.ready(sample), result, jnp.nan)
 
 
 def submerged(log: Log, columns: Sequence[int]) -> Log:
@@ -75,14 +75,14 @@ def spoiled(lesson: Lesson, vehicle: Follower, sigma_m: float, seed: int) -> Les
 
 
 def _faults(log: Log, column: int, sigma_m: float, rng: np.random.Generator) -> list[Fault]:
-    channel, heard = log.channels[column], log.time[log.fresh[:, column]]
+    channel, received = log.channels[column], log.time[log.fresh[:, column]]
     unit = float(from_si(1.0, channel.unit))
     faults = []
     for start in np.arange(log.time[0], log.time[-1] - EVERY_S, EVERY_S) + rng.uniform(0, EVERY_S / 3):
         kind, length = str(rng.choice(KINDS)), float(rng.uniform(*LONGEST_S))
-        if not ((heard >= start) & (heard < start + length)).any():
+        if not ((received >= start) & (received < start + length)).any():
             continue
-        size = {"jam": 0.0, "drift": rng.uniform(*DRIFT), "bias": rng.uniform(*BIAS)}[kind] * sigma_m * unit
+        size = {"frozen": 0.0, "drift": rng.uniform(*DRIFT), "offset": rng.uniform(*BIAS)}[kind] * sigma_m * unit
         sign = float(rng.choice((-1, 1)))
         faults.append(Fault(kind, channel.sensor, channel.name, float(start), length, float(sign * size)))
     return faults
@@ -112,8 +112,8 @@ def innovations(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) 
         rows = samples(lesson.log.time, lesson.log.value, lesson.log.fresh)
         tape = _Tape(*(np.asarray(x) for x in _told(monitor, rows)))
         for j, column in enumerate(vehicle.observed):
-            told = np.asarray(tape.valid)[:, column] & np.isfinite(lesson.error[:, j])
-            runs[j].append(Run(tuple(np.asarray(x)[told, column] for x in tape[:3]), lesson.error[told, j]))
+            result = np.asarray(tape.valid)[:, column] & np.isfinite(lesson.error[:, j])
+            runs[j].append(Run(tuple(np.asarray(x)[result, column] for x in tape[:3]), lesson.error[result, j]))
     return runs
 
 

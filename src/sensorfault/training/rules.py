@@ -29,12 +29,12 @@ class Membership(NamedTuple):
 
 def memberships(model: Anfis, names: Sequence[str]) -> tuple[Membership, ...]:
     """All of a model's, in the order of its premises. `names`: of the features."""
-    told = jax.tree.map(np.asarray, model)
-    premises, words = told.premises, _words(told)
+    result = jax.tree.map(np.asarray, model)
+    premises, words = result.premises, _words(result)
     of = list(premises.inputs)
-    span, low = told.unit.span[of], told.unit.low[of]
+    span, low = result.unit.span[of], result.unit.low[of]
     center = low + span * premises.center
-    center = np.exp(center) if told.unit.log else center
+    center = np.exp(center) if result.unit.log else center
     return tuple(
         Membership(names[i], words[p], float(center[p]), float(premises.width[p] * span[p]), float(premises.slope[p]))
         for p, i in enumerate(of)
@@ -46,14 +46,14 @@ def sentences(model: Anfis, names: Sequence[str], said: str = "error", unit: str
 
     What a rule says is in the features' own units, or of their logarithms where the model takes them.
     """
-    told = jax.tree.map(np.asarray, model)
-    words = _words(told)
-    written = [f"ln {name}" if told.unit.log else name for name in names]
-    slopes = told.consequents[:, :-1] / told.unit.span
-    constants = told.consequents[:, -1] - slopes @ told.unit.low
+    result = jax.tree.map(np.asarray, model)
+    words = _words(result)
+    written = [f"ln {name}" if result.unit.log else name for name in names]
+    slopes = result.consequents[:, :-1] / result.unit.span
+    constants = result.consequents[:, -1] - slopes @ result.unit.low
     return tuple(
-        f"If {_premise(told, rule, words, names)}, the {said} is {_line(constant, slope, written, unit)}."
-        for rule, slope, constant in zip(told.premises.rules, slopes, constants, strict=True)
+        f"If {_premise(result, rule, words, names)}, the {said} is {_line(constant, slope, written, unit)}."
+        for rule, slope, constant in zip(result.premises.rules, slopes, constants, strict=True)
     )
 
 

@@ -54,7 +54,7 @@ class SideOn(eqx.Module):
     gyro: tuple[int, int, int] = eqx.field(static=True)
     accelerometer: tuple[int, int, int] = eqx.field(static=True)
 
-    def told(self, sample: Sample) -> tuple[Float[Array, ""], Float[Array, ""], Bool[Array, ""]]:
+    def force_and_turn(self, sample: Sample) -> tuple[Float[Array, ""], Float[Array, ""], Bool[Array, ""]]:
         """Force to the left [m/s^2] and turn rate [rad/s], and whether all of the unit is new; zeros where not."""
         there = jnp.stack([sample.fresh[i] for i in (*self.gyro, *self.accelerometer)]).all()
         force = self.left @ jnp.stack([sample.value[i] for i in self.accelerometer]) - self.level

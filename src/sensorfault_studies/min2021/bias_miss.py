@@ -72,31 +72,31 @@ def _clean(drive: _Drive) -> Iterator[Row]:
 
 def _outcomes(drive: _Drive, effort: Effort, tell: Callable[[float], None]) -> list[Outcome]:
     """Each fault struck in a copy of the rest, several in one copy where there is room between them."""
-    told: list[Outcome] = []
+    result: list[Outcome] = []
     wanted = [one for _ in range(1 if effort.quick else effort.seeds) for one in _wanted(drive.rest, effort.quick)]
     batches = list(_batches(wanted, drive.rest.duration_s))
     for seed, batch in enumerate(batches):
         faults = plan(drive.rest, batch, pause_s=PAUSE_S, seed=seed)
         struck = [part for fault in faults for part in _parts(fault, drive.rest, seed)]
         found = detect(drive.model, inject(drive.rest, struck, seed).log)
-        told += judge(found, faults).outcomes
+        result += judge(found, faults).outcomes
         tell((seed + 1) / len(batches))
-    return told
+    return result
 
 
 def _wanted(log: Log, quick: bool) -> Iterator[Fault]:
     """One of each; of those on the position, whose direction is drawn by lot, four."""
     for channel in (c for c in log.channels if c.name in ("x", "y", "z")):
         for size in SIGMAS[-1:] if quick else SIGMAS:
-            yield Fault("bias", channel.sensor, channel.name, 0.0, BIAS_S, size, sigmas=True)
-        yield Fault("jam", channel.sensor, channel.name, 0.0, JAM_S)
-        yield Fault("short", channel.sensor, channel.name, 0.0, 0.0, SPIKE_SIGMAS, sigmas=True)
+            yield Fault("offset", channel.sensor, channel.name, 0.0, BIAS_S, size, sigmas=True)
+        yield Fault("frozen", channel.sensor, channel.name, 0.0, JAM_S)
+        yield Fault("spike", channel.sensor, channel.name, 0.0, 0.0, SPIKE_SIGMAS, sigmas=True)
     receiver = log.channels[log.index("latitude")].sensor
     for metres in METRES[-1:] if quick else METRES:
-        yield from 4 * [Fault("bias", receiver, None, 0.0, BIAS_S, metres)]
+        yield from 4 * [Fault("offset", receiver, None, 0.0, BIAS_S, metres)]
     for sensor in log.sensors:
-        heard = (silence_s for silence_s in SILENCES_S if silence_s > MISSED * sensor.period_s)
-        yield from (Fault("miss", sensor.name, None, 0.0, silence_s, silence_s) for silence_s in heard)
+        received = (silence_s for silence_s in SILENCES_S if silence_s > MISSED * sensor.period_s)
+        yield from (Fault("missing", sensor.name, None, 0.0, silence_s, silence_s) for silence_s in received)
 
 
 def _batches(wanted: Sequence[Fault], room_s: float) -> Iterator[list[Fault]]:
@@ -114,7 +114,7 @@ def _batches(wanted: Sequence[Fault], room_s: float) -> Iterator[list[Fault]]:
 
 def _parts(fault: Fault, log: Log, seed: int) -> list[Fault]:
     """An offset of the whole receiver is one of its position: latitude and longitude, so many metres one way."""
-    if fault.channel is not None or fault.kind == "miss":
+    if fault.channel is not None or fault.kind == "missing":
         return [fault]
     latitude = float(np.nanmedian(log.value[:, log.index("latitude")]))
     way = np.random.default_rng([seed, round(1000 * fault.start_s)]).uniform(0, 2 * np.pi)
@@ -126,21 +126,21 @@ def _parts(fault: Fault, log: Log, seed: int) -> list[Fault]:
 
 def _rows(drive: _Drive, cell: Cell, seeds: int) -> Iterator[Row]:
     """Recall of the right sensor, delay and naming, beside what chance finds."""
-    size = cell.magnitude if cell.kind != "jam" else JAM_S
-    told = {
+    size = cell.magnitude if cell.kind != "frozen" else JAM_S
+    result = {
         "detection_rate": cell.recall * cell.sensor_right if cell.recall else 0.0,
         "chance": cell.chance,
         "delay_s": cell.delay_p50_s,
         "kind_right": cell.kind_right,
     }
-    for metric, value in told.items():
+    for metric, value in result.items():
         condition = f"{cell.channel} n{cell.faults}"
         yield Row("A4", drive.name, "injected", condition, METHOD, cell.kind, size, metric, value, None, seeds)
 
 
 def _remarks(rows: Sequence[Row]) -> tuple[str, ...]:
     """The smallest offset on each sensor that is found in nine of ten, as one sentence a drive."""
-    rates = [row for row in rows if row.fault == "bias" and row.metric == "detection_rate"]
+    rates = [row for row in rows if row.fault == "offset" and row.metric == "detection_rate"]
     return tuple(
         f"A4, {name}: smallest offset of those tried that is found and laid to the right sensor in nine of ten: "
         + ", ".join(_least(where, [row for row in rates if row.data == name]) for where in _places(rates, name))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.core.types import FAULT
 from sensorfault.evaluation.ranking import auc
 from sensorfault.logs.table import Log
@@ -33,7 +33,7 @@ class Said:
 def said(model: Model, log: Log, rows: Int[np.ndarray, " N"], channels: tuple[int, ...], subject: Subject) -> Said:
     """A model's word on these channels, at these rows."""
     asked = np.array([subject(name) for name, _ in model.tests])
-    score = np.concatenate([np.asarray(x) for x in replay_log(deaf(model.monitor), log).scores], axis=1)[rows]
+    score = np.concatenate([np.asarray(x) for x in replay_log(uncalibrated(model.monitor), log).scores], axis=1)[rows]
     ratio = np.where(np.isfinite(score) & asked, score / limits(model), 0.0).max(axis=1)
     verdict = np.asarray(replay_log(model.monitor, log).channel)[rows]
     return Said(ratio, (verdict[:, list(channels)] == FAULT).any(axis=1))

@@ -60,11 +60,11 @@ def onsets(drive: Drive, length_s: float, seed: int) -> tuple[float, ...]:
     """As many jams as fit, the car faster than LEAST_SPEED throughout each; the seed moves them."""
     rest, rng = drive.rest, np.random.default_rng([seed, round(10 * length_s)])
     assert drive.roles.velocity is not None
-    heard = rest.time[rest.fresh[:, drive.roles.velocity[0]]]
-    slow = np.setdiff1d(heard, moving(rest, drive.roles, LEAST_SPEED))
+    received = rest.time[rest.fresh[:, drive.roles.velocity[0]]]
+    slow = np.setdiff1d(received, moving(rest, drive.roles, LEAST_SPEED))
     time = float(rest.time[0]) + WARM_S + float(rng.uniform(0.0, length_s + 1.0))
     found: list[float] = []
-    while time + length_s + RECOVERY_S < heard[-1]:
+    while time + length_s + RECOVERY_S < received[-1]:
         stops = slow[(slow >= time - RECOVERY_S / 2) & (slow < time + length_s)]
         if stops.size:
             time = float(stops[-1]) + RECOVERY_S / 2 + 1e-3
@@ -78,7 +78,7 @@ def jammed(drive: Drive, length_s: float, seed: int, channels: Sequence[str] = (
     """The receiver's `channels` frozen: at each of its epochs they read what they read before the onset."""
     sensor = drive.rest.channels[drive.position[0]].sensor
     at = onsets(drive, length_s, seed)
-    faults = [Fault("jam", sensor, name, onset, length_s) for onset in at for name in channels]
+    faults = [Fault("frozen", sensor, name, onset, length_s) for onset in at for name in channels]
     log = inject(drive.rest, faults, seed).log if faults else drive.rest
     time = drive.rest.time[drive.fixes]
     frozen, scored = np.zeros(len(time), bool), np.ones(len(time), bool)

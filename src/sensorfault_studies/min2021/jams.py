@@ -53,7 +53,7 @@ class Judged:
             paper = PAPER.get(method, {}).get(metric) if condition == "as-printed pooled" else None
             source = "real" if condition == "clean" else "injected"
             spread = float(np.std(values)) if len(values) > 1 else None
-            fault = None if condition == "clean" else "jam"
+            fault = None if condition == "clean" else "frozen"
             value = float(np.mean(values))
             yield Row(
                 "A2",
@@ -73,7 +73,7 @@ class Judged:
 
 def jams(effort: Effort) -> Findings:
     """Accuracy, precision, recall, F1 and AUC of every method, on the last 40 % of both real drives."""
-    told, lines = [], []
+    result, lines = [], []
     drives = dict(list(DRIVES.items())[:1]) if effort.quick else DRIVES
     for n, (name, folder) in enumerate(drives.items()):
 
@@ -81,10 +81,10 @@ def jams(effort: Effort) -> Findings:
             effort.tell(f"A2 {name}: {doing}", (n + share) / len(drives))
 
         judged, models = _judge(Drive.read(name, folder), effort, tell)
-        told.append(judged)
+        result.append(judged)
         lines.append((judged.drive, models))
-    rows = tuple(row for judged in told for row in judged.rows())
-    return Findings(rows, figures(rows, lines), _remarks(told))
+    rows = tuple(row for judged in result for row in judged.rows())
+    return Findings(rows, figures(rows, lines), _remarks(result))
 
 
 def _methods(quick: bool) -> tuple[str, ...]:
@@ -204,7 +204,7 @@ def _slippage(part: object) -> bool:
     return isinstance(part, Slippage)
 
 
-def _remarks(told: list[Judged]) -> tuple[str, ...]:
+def _remarks(result: list[Judged]) -> tuple[str, ...]:
     said_of = [
         "A2: frozen are latitude and longitude together, at the receiver's own epochs, while the car is faster than "
         f"{LEAST_SPEED:g} m/s; each jam is followed by a second that is not scored and a healthy pause of one to two "
@@ -219,7 +219,7 @@ def _remarks(told: list[Judged]) -> tuple[str, ...]:
         f"A2: 'no-repeats' is {METHOD} without its test of exact repeats (way gone while the position repeats to the "
         "last bit), as it would meet a receiver that dithers.",
     ]
-    for judged in told:
+    for judged in result:
         if judged.smallest:
             along, across = judged.smallest
             said_of.append(

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.evaluation.ranking import auc
 from sensorfault.runtime.model import Model
 from sensorfault.stages.threshold.scaled_max import ScaledMax
@@ -45,39 +45,39 @@ class Judged:
 
 def judge(drive: Drive, rival: Candidate, sizes: Sequence[float], seeds: range) -> Judged:
     """Fit, replay the rest of the drive untouched and spiked, count."""
-    told = Judged()
+    result = Judged()
     odd = folds(drive.rest.time)
     model = None
     for seed in seeds:
         if model is None or rival.chance:
             model, took = rival.build(drive.learn, seed)
-            told.add(rival.condition, "fit_s", None, took)
-            told.left.append(float(np.mean(np.array(model.sigma) / drive.sigma)))
-        monitor = deaf(model.monitor)
+            result.add(rival.condition, "fit_s", None, took)
+            result.left.append(float(np.mean(np.array(model.sigma) / drive.sigma)))
+        monitor = uncalibrated(model.monitor)
         clean = judged_rows(monitor, drive.rest)
         healthy = clean.score
-        told.add(rival.limit, "far", None, float(over(model, healthy).mean()))
+        result.add(rival.limit, "far", None, float(over(model, healthy).mean()))
         all_scores, all_struck = [], []
         for size in sizes:
             log, struck = spiked(drive, size, seed)
             there = judged_rows(monitor, log)
             score = there.score
             if size == PLAIN:
-                told.spike_left.append(left_of_spikes(drive, log, there, clean))
-            told.add(rival.condition, "auc", size, auc(score, struck))
-            told.add(rival.limit, "recall", size, float(over(model, score)[struck].mean()))
+                result.spike_left.append(left_of_spikes(drive, log, there, clean))
+            result.add(rival.condition, "auc", size, auc(score, struck))
+            result.add(rival.limit, "recall", size, float(over(model, score)[struck].mean()))
             for name, rate in RATES.items():
                 recall, false = detected(healthy, score, struck, odd, rate)
-                told.add(name, "recall", size, recall)
+                result.add(name, "recall", size, recall)
                 if size == sizes[0]:
-                    told.add(name, "far", None, false)
+                    result.add(name, "far", None, false)
             all_scores.append(score)
             all_struck.append(struck)
         pooled, marks = np.concatenate(all_scores), np.concatenate(all_struck)
-        told.add(f"{rival.condition} pooled", "auc", None, auc(pooled, marks))
-        told.add(f"{rival.limit} fixed-point", "agreement", None, agreement(model, pooled))
-        told.curve = told.curve if told.curve[0] else curve(pooled, marks)
-    return told
+        result.add(f"{rival.condition} pooled", "auc", None, auc(pooled, marks))
+        result.add(f"{rival.limit} fixed-point", "agreement", None, agreement(model, pooled))
+        result.curve = result.curve if result.curve[0] else curve(pooled, marks)
+    return result
 
 
 def _limit(model: Model) -> ScaledMax:

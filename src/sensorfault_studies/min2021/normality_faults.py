@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.calibration.gumbel import gumbel_limit
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch
 from sensorfault.faults.motion import Felt, MotionFault, move
 from sensorfault.logs.table import Log
@@ -93,7 +93,7 @@ def biases(judged: Judged, count: int, metres: Sequence[float] = BIASES_M) -> li
     second = Branch(largest, Fixed(jnp.full(2, jnp.inf)), subject=MOTION)
     both = replace(judged.model.monitor, branches=(*branches, second))
     healthy = judged.learn.time > judged.learn.time[0] + 10.0
-    tape = score_tape(both, judged.learn)[-1][healthy]
+    tape = open_loop_scores(both, judged.learn)[-1][healthy]
     limits = [float(np.asarray(branches[0].threshold.limit)[0])]  # type: ignore[attr-defined]
     limits.append(float(gumbel_limit(tape, judged.learn.time[healthy], 0.25, 5.0)[0]))
     starts = onsets(judged, count, WITHIN_S)
@@ -129,9 +129,9 @@ def biases(judged: Judged, count: int, metres: Sequence[float] = BIASES_M) -> li
                 found[k].append(_first(np.asarray(scores[branch])[:, 0], rest.time, start, limit))
         for name, delays in zip(NORMS, found, strict=True):
             hit = [d for d in delays if d is not None]
-            row(name, "bias", size, "detection_rate", len(hit) / max(len(delays), 1), len(delays))
+            row(name, "offset", size, "detection_rate", len(hit) / max(len(delays), 1), len(delays))
             if hit:
-                row(name, "bias", size, "delay_s", float(np.mean(hit)), len(hit))
+                row(name, "offset", size, "delay_s", float(np.mean(hit)), len(hit))
     return rows
 
 
@@ -149,18 +149,18 @@ def motions(judged: Judged, rivals: Sequence[Model], count: int) -> list[Row]:
     rows = []
     for kind, length_s, size in wanted:
         starts = onsets(judged, count, length_s, LEAST_SPEED)
-        told = np.zeros((len(models), 4))  # found as motion, a sensor accused, the same without the fault
+        result = np.zeros((len(models), 4))  # found as motion, a sensor accused, the same without the fault
         for k, start in enumerate(starts):
             fault = MotionFault(kind, start, length_s, size if k % 2 or kind == "wheel slip" else -size)
             log = move(judged.rest, fault, judged.felt)
             for m, model in enumerate(models):
                 for at, events in ((0, detect(model, log).events), (2, clean[m])):
                     here = [e for e in events if e.start_s <= fault.end_s + AFTER_S and (e.end_s or np.inf) >= start]
-                    told[m, at] += any(e.subject == "motion" for e in here)
-                    told[m, at + 1] += any(e.subject == "sensor" and e.kind != "miss" for e in here)
+                    result[m, at] += any(e.subject == "motion" for e in here)
+                    result[m, at + 1] += any(e.subject == "sensor" and e.kind != "missing" for e in here)
         name = f"{kind} {length_s:g}s".replace(" ", "-")
         many = len(starts)
-        for model, counts in zip(models, told, strict=True):
+        for model, counts in zip(models, result, strict=True):
             for metric, c in zip(("detection_rate", "wrong_exclusions", "chance", "chance_wrong"), counts, strict=True):
                 share = float(c) / max(many, 1)
                 rows.append(

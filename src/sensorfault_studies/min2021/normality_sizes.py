@@ -96,8 +96,8 @@ def made(seeds: int) -> Iterator[Row]:
     # what it cannot see: each window shifted by three of its standard deviations, or made twice as wide
     normal = noise[:, 100:]
     plain = jarque_bera(normal) > jarque_bera_quantile(float(n), 1 - LEVEL)
-    for fault, changed in (("bias", normal + 3.0), ("scale", 2.0 * normal)):
-        size = 3.0 if fault == "bias" else 2.0
+    for fault, changed in (("offset", normal + 3.0), ("scale", 2.0 * normal)):
+        size = 3.0 if fault == "offset" else 2.0
         tests = {
             "jarque-bera": jarque_bera(changed) > jarque_bera_quantile(float(n), 1 - LEVEL),
             "mean": np.sqrt(n) * np.abs(changed.mean(axis=1)) > 1.96,

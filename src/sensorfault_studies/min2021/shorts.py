@@ -49,7 +49,7 @@ def told_of(data: str, pairs: Pairs, sizes: Sequence[float]) -> Findings:
 def _row(data: str, condition: str, method: str, size: float | None, metric: str, values: Sequence[float]) -> Row:
     spread = float(np.std(values, ddof=1)) if len(values) > 1 else None
     return Row(
-        "A1", data, "injected", condition, method, "short", size, metric, float(np.mean(values)), spread, len(values)
+        "A1", data, "injected", condition, method, "spike", size, metric, float(np.mean(values)), spread, len(values)
     )
 
 
@@ -82,7 +82,7 @@ def _chance(data: str, sizes: Sequence[float]) -> list[Row]:
     """What comes of accusing rows at random."""
     blind = [("", size, "auc", 0.5) for size in sizes]
     blind += [(name, size, "recall", rate) for name, rate in RATES.items() for size in sizes]
-    return [Row("A1", data, "injected", c, "chance", "short", s, metric, value) for c, s, metric, value in blind]
+    return [Row("A1", data, "injected", c, "chance", "spike", s, metric, value) for c, s, metric, value in blind]
 
 
 def _figure(data: str, pairs: Pairs) -> Figure:
@@ -99,7 +99,7 @@ def _remarks(data: str, pairs: Pairs) -> tuple[str, ...]:
     """Why the paper's margin is there."""
     auc = {(r.method, r.condition): j.mean(r.condition, "auc", PLAIN) for r, j in pairs}
     main = {r.method: auc[r.method, r.condition] for r, _ in pairs if r.main}
-    told = "; ".join(
+    result = "; ".join(
         f"{r.method} {r.condition}: {np.mean(j.spike_left):.0%}, {np.mean(j.left):.1%}, "
         f"{auc[r.method, r.condition]:.3f}"
         for r, j in pairs
@@ -109,5 +109,5 @@ def _remarks(data: str, pairs: Pairs) -> tuple[str, ...]:
         f"{PLAIN:g} sigma the extreme-learning one leads by {main[ELM] - main[BACKPROP]:+.3f} since it copies worse "
         "what lies beyond its training, not since it knows the drive better: what cannot copy (principal components, 3 "
         "hidden nodes, C = 0.01) and what looks back is compared here. Share of such a spike that is left, share of a "
-        f"channel's sigma left of healthy rows, AUC: {told}.",
+        f"channel's sigma left of healthy rows, AUC: {result}.",
     )

@@ -66,8 +66,8 @@ class Judgement(NamedTuple):
 
 def judged_rows(monitor: Monitor, log: Log) -> Judgement:
     """By a monitor with its limits off: nothing is excluded, so that a score depends on no limit."""
-    told = replay_log(monitor, log)
-    return Judgement(np.asarray(told.scores[0])[:, 0], np.asarray(told.residual))
+    result = replay_log(monitor, log)
+    return Judgement(np.asarray(result.scores[0])[:, 0], np.asarray(result.residual))
 
 
 def left_of_spikes(drive: Drive, spiked: Log, there: Judgement, clean: Judgement) -> float:

@@ -25,7 +25,7 @@ from sensorfault.stages.residual.height_kalman import HeightKalman
 from sensorfault.stages.residual.multistep_observer import MultistepObserver
 from sensorfault.stages.residual.several import Several
 from sensorfault.stages.statistic.horizons import Horizons
-from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.statistic.select_residual import SelectResidual
 from sensorfault.stages.threshold.adaptive import Adaptive
 from sensorfault.training.fixes import Fixes
 from sensorfault.training.height_kalman import fit_height_kalman
@@ -86,7 +86,7 @@ class Contender:
         threshold = Adaptive(own, own, start, jnp.asarray(CHI_SQUARE), part=1, column=0)
         return Monitor(
             residual=Several((self.observers[k], self.companion), jnp.asarray(np.stack([mine, mine & False]))),
-            branches=(Branch(Of(Horizons(0), 0), threshold, gates=closed),),
+            branches=(Branch(SelectResidual(Horizons(0), 0), threshold, gates=closed),),
             decision=Exceed(),
             recovery=Rebuild(jnp.asarray(HORIZON_S), jnp.asarray(1.5 * period_s), channels) if closed else Drop(),
             hold_s=jnp.zeros(channels),
@@ -102,8 +102,8 @@ class Contender:
 
 def _rms(model: Climb | StepNetwork, part: Log, steps: int, longest: int) -> float:
     """Of so many steps; with the longest beside them, so that all are one compilation."""
-    told = errors(model, Fixes.of(part, 0, model.columns), (steps, longest))
-    return float(np.sqrt(np.mean(told[0] ** 2)))
+    result = errors(model, Fixes.of(part, 0, model.columns), (steps, longest))
+    return float(np.sqrt(np.mean(result[0] ** 2)))
 
 
 def network(flown: Flown, steps: tuple[int, ...], seeds: int, separate: bool = False) -> Contender:
@@ -155,11 +155,11 @@ def watch(monitors: Monitor, logs: Sequence[Log]) -> Seen:
 def _watch(monitors: Monitor, rows: Sample) -> tuple[Array, Array, Array]:
     def kept(report: Report) -> tuple[Array, Array, Array]:
         (score,), (limit,) = report.scores, report.limits
-        told = jnp.where(score.valid[0], score.value[0], jnp.nan)
-        return report.verdict.channel[0] == FAULT, told, limit[0]
+        result = jnp.where(score.valid[0], score.value[0], jnp.nan)
+        return report.verdict.channel[0] == FAULT, result, limit[0]
 
     def one(monitor: Monitor, cell: Sample) -> tuple[Array, Array, Array]:
         return replay(monitor, monitor.init(), cell, kept)[1]
 
-    told: tuple[Array, Array, Array] = jax.vmap(jax.vmap(one, (None, 0)), (0, None))(monitors, rows)
-    return told
+    result: tuple[Array, Array, Array] = jax.vmap(jax.vmap(one, (None, 0)), (0, None))(monitors, rows)
+    return result

@@ -63,15 +63,15 @@ def _flight(name: str, share: tuple[float, float], effort: Effort) -> Drift:
     flown = Flown.of(flight(name))
     slopes = QUICK_SLOPES if effort.quick else SLOPES
     ramps = Ramps.on(flown.judge, slopes)
-    told = Drift(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"), ramps=ramps)
+    result = Drift(name, Numbers(EXPERIMENT, name, "real"), Numbers(EXPERIMENT, name, "injected"), ramps=ramps)
     kinds = _kinds(flown, effort)
     for i, (words, build) in enumerate(kinds.items()):
         effort.tell(f"{name}: {words}, fitting", begun + part * i / len(kinds))
         contender = build()
-        told.contenders.append(contender)
+        result.contenders.append(contender)
         effort.tell(f"{name}: {words}, judging", begun + part * (i + 0.5) / len(kinds))
-        _judge(told, contender, ramps, slopes)
-    return told
+        _judge(result, contender, ramps, slopes)
+    return result
 
 
 def _kinds(flown: Flown, effort: Effort) -> Mapping[str, Callable[[], Contender]]:
@@ -87,11 +87,11 @@ def _kinds(flown: Flown, effort: Effort) -> Mapping[str, Callable[[], Contender]
     return kinds
 
 
-def _judge(told: Drift, contender: Contender, ramps: Ramps, slopes: tuple[float, ...]) -> None:
+def _judge(result: Drift, contender: Contender, ramps: Ramps, slopes: tuple[float, ...]) -> None:
     """All limits, set on the part that was learned from; open loop, as in the paper, except where it says closed."""
     flown, many = contender.flown, len(contender.steps)
     for n, rms in zip(contender.steps, contender.rms(flown.judge), strict=True):
-        told.real.add(_words(contender, "", n), contender.method, {"rms": rms})
+        result.real.add(_words(contender, "", n), contender.method, {"rms": rms})
     loud = contender.monitors(np.full(many, LOUD))
     plain = contender.trained is None and not contender.variant
     flight = Ramps.on(flown.log, slopes) if plain else Ramps.on(flown.log, ())
@@ -99,19 +99,19 @@ def _judge(told: Drift, contender: Contender, ramps: Ramps, slopes: tuple[float,
     learned = whole.score[:, 0, : flown.start]
     seen = watch(loud, ramps.logs)
     for words, rate in RATES.items():
-        _add(told, contender, words, ramps, seen.score > _limit(learned, rate))
+        _add(result, contender, words, ramps, seen.score > _limit(learned, rate))
     if plain:
-        _add(told, contender, f"{HARD} {WHOLE}", flight, whole.score > _limit(learned, RATES[HARD]))
-    _add(told, contender, MATCHED, ramps, seen.score > _limit(seen.score[:, 0], RATES[HARD]))
+        _add(result, contender, f"{HARD} {WHOLE}", flight, whole.score > _limit(learned, RATES[HARD]))
+    _add(result, contender, MATCHED, ramps, seen.score > _limit(seen.score[:, 0], RATES[HARD]))
     printed = watch(contender.monitors(np.ones(many)), ramps.logs)
-    _add(told, contender, PRINTED, ramps, printed.alarm)
+    _add(result, contender, PRINTED, ramps, printed.alarm)
     factor = _limit(learned / whole.limit[:, 0, : flown.start] * LOUD, RATES[HARD])[:, 0, 0]
-    _add(told, contender, f"{HARD} {ADAPTIVE}", ramps, watch(contender.monitors(factor), ramps.logs).alarm)
+    _add(result, contender, f"{HARD} {ADAPTIVE}", ramps, watch(contender.monitors(factor), ramps.logs).alarm)
     if not contender.variant:
         closed = watch(contender.monitors(factor, closed=True), ramps.logs)
-        _add(told, contender, f"{HARD} {ADAPTIVE} {CLOSED}", ramps, closed.alarm)
+        _add(result, contender, f"{HARD} {ADAPTIVE} {CLOSED}", ramps, closed.alarm)
     if contender.trained and not contender.variant:
-        told.printed = printed
+        result.printed = printed
 
 
 def _limit(scores: Float[np.ndarray, "K T"], rate: float) -> Float[np.ndarray, "K 1 1"]:
@@ -123,7 +123,7 @@ def _words(contender: Contender, condition: str, steps: int) -> str:
     return " ".join(part for part in (condition, contender.variant, f"N{steps}") if part)
 
 
-def _add(told: Drift, contender: Contender, condition: str, ramps: Ramps, alarm: Alarms) -> None:
+def _add(result: Drift, contender: Contender, condition: str, ramps: Ramps, alarm: Alarms) -> None:
     """Rates and delays of each number of steps: the mean over all slopes, and each slope."""
     headline = condition in HEADLINE
     slopes = tuple(dict.fromkeys(ramps.slope[1:].tolist()))
@@ -135,17 +135,17 @@ def _add(told: Drift, contender: Contender, condition: str, ramps: Ramps, alarm:
         if not headline and n not in TOLD:
             continue
         chance = count(ramps, alarm[k], np.flatnonzero(ramps.slope > 0), fault=False)
-        told.real.add(words, contender.method, {"far": float(judged.mean())})
-        _told(told.injected, words, contender.method, mean(each), chance, None)
+        result.real.add(words, contender.method, {"far": float(judged.mean())})
+        _told(result.injected, words, contender.method, mean(each), chance, None)
         if headline and n in SWEPT and not contender.variant:
             for slope, one in zip(slopes, each, strict=True):
-                _told(told.injected, words, contender.method, one, chance, slope)
+                _told(result.injected, words, contender.method, one, chance, slope)
     if not contender.variant:
         rate, delay = (
             np.array([[np.mean([seed[s][i] for seed in counts[n]]) for s in range(len(slopes))] for n in counts])
             for i in range(2)
         )
-        told.surfaces[contender.method, condition] = Surface(tuple(counts), slopes, rate, delay)
+        result.surfaces[contender.method, condition] = Surface(tuple(counts), slopes, rate, delay)
 
 
 def mean(counts: list[Count]) -> Count:
@@ -154,6 +154,6 @@ def mean(counts: list[Count]) -> Count:
 
 
 def _told(numbers: Numbers, words: str, method: str, found: Count, chance: Count, slope: float | None) -> None:
-    told = {"detection_rate": found.rate, "chance": chance.rate, "delay_steps": found.delay}
-    told |= {"chance_delay_steps": chance.delay} | ({"missed": found.missed} if slope is None else {})
-    numbers.add(words, method, told, DRIFT, slope)
+    result = {"detection_rate": found.rate, "chance": chance.rate, "delay_steps": found.delay}
+    result |= {"chance_delay_steps": chance.delay} | ({"missed": found.missed} if slope is None else {})
+    numbers.add(words, method, result, DRIFT, slope)

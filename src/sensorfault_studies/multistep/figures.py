@@ -14,16 +14,16 @@ SHOWN = ((NETWORK, PRINTED), (NETWORK, HARD), (KINEMATIC, HARD))
 SLOW = 0.1  # the ramp of figure 7 [m/s]
 
 
-def of_drift(told: Drift) -> tuple[Figure, ...]:
+def of_drift(result: Drift) -> tuple[Figure, ...]:
     """Of one flight."""
-    shown = [_sweep(told.data, *key, told.surfaces[key]) for key in SHOWN if key in told.surfaces]
-    return (*_training(told), *(_residual(told, n) for n in (1, 10)), *shown)
+    shown = [_sweep(result.data, *key, result.surfaces[key]) for key in SHOWN if key in result.surfaces]
+    return (*_training(result), *(_residual(result, n) for n in (1, 10)), *shown)
 
 
-def _training(told: Drift) -> tuple[Figure, ...]:
+def _training(result: Drift) -> tuple[Figure, ...]:
     """The paper's figure 6."""
     data: list[Json] = []
-    for contender in told.contenders:
+    for contender in result.contenders:
         if contender.trained is None or contender.variant:
             continue
         for m, n in enumerate(contender.steps[: len(contender.steps) // contender.seeds]):
@@ -38,21 +38,23 @@ def _training(told: Drift) -> tuple[Figure, ...]:
         "The paper's figure 6: each training ends when ten epochs have brought no lower loss; the paper's own ended "
         "after 294."
     )
-    figure = Figure(f"d_training_{told.data}", f"Training loss, {told.data}", caption, {"data": data, "layout": layout})
+    figure = Figure(
+        f"d_training_{result.data}", f"Training loss, {result.data}", caption, {"data": data, "layout": layout}
+    )
     return (figure,)
 
 
-def _residual(told: Drift, steps: int) -> Figure:
+def _residual(result: Drift, steps: int) -> Figure:
     """The paper's figure 7: the slowest ramp at its first onset, under the threshold as printed."""
-    (contender,) = [c for c in told.contenders if c.trained and not c.variant]
-    assert told.printed is not None
-    assert told.ramps is not None
-    (cell, *_) = np.flatnonzero(told.ramps.slope == SLOW)
-    onset, k = int(told.ramps.onset[cell]), contender.of(steps)[0]
+    (contender,) = [c for c in result.contenders if c.trained and not c.variant]
+    assert result.printed is not None
+    assert result.ramps is not None
+    (cell, *_) = np.flatnonzero(result.ramps.slope == SLOW)
+    onset, k = int(result.ramps.onset[cell]), contender.of(steps)[0]
     data = [
-        _line("|residual|", told.printed.score[k, cell]),
-        _line("|residual| without the ramp", told.printed.score[k, 0]) | {"line": {"width": 1}, "opacity": 0.5},
-        _line("threshold", told.printed.limit[k, cell]) | {"line": {"dash": "dot"}},
+        _line("|residual|", result.printed.score[k, cell]),
+        _line("|residual| without the ramp", result.printed.score[k, 0]) | {"line": {"width": 1}, "opacity": 0.5},
+        _line("threshold", result.printed.limit[k, cell]) | {"line": {"dash": "dot"}},
     ]
     mark: Json = {"type": "line", "x0": onset, "x1": onset, "yref": "paper", "y0": 0, "y1": 1, "line": {"dash": "dash"}}
     layout: Json = {
@@ -60,15 +62,15 @@ def _residual(told: Drift, steps: int) -> Figure:
         "yaxis": {"title": {"text": "[m]"}},
         "shapes": [mark],
     }
-    late = told.printed.alarm[k, cell, onset:]
+    late = result.printed.alarm[k, cell, onset:]
     found = f"{int(np.argmax(late))} steps later" if late.any() else "never"
     caption = (
         f"The paper's figure 7 with a = b = 1: a ramp of {SLOW} m/s begins at the dashed line, and the first alarm "
         f"comes {found}. Thin: the same flight without the ramp. The paper's begins at step 500; its alarms come at "
         "883 with N = 1 and at 580 with N = 10."
     )
-    title = f"Residual and threshold, N = {steps}, {told.data}"
-    return Figure(f"d_residual_n{steps}_{told.data}", title, caption, {"data": data, "layout": layout})
+    title = f"Residual and threshold, N = {steps}, {result.data}"
+    return Figure(f"d_residual_n{steps}_{result.data}", title, caption, {"data": data, "layout": layout})
 
 
 def _sweep(data: str, method: str, condition: str, surface: Surface) -> Figure:

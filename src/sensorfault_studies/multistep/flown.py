@@ -106,7 +106,7 @@ class Count(NamedTuple):
 
 def count(ramps: Ramps, alarm: Bool[np.ndarray, "N T"], cells: Int[np.ndarray, " n"], fault: bool = True) -> Count:
     """Over these cells; with `fault` False, over their spans in the flight without a fault."""
-    told = [alarm[cell if fault else 0, ramps.span(int(cell))] for cell in cells]
-    first = [int(np.argmax(each)) if each.any() else len(each) for each in told]
-    rate, missed = np.mean([each.mean() for each in told]), np.mean([not each.any() for each in told])
+    result = [alarm[cell if fault else 0, ramps.span(int(cell))] for cell in cells]
+    first = [int(np.argmax(each)) if each.any() else len(each) for each in result]
+    rate, missed = np.mean([each.mean() for each in result]), np.mean([not each.any() for each in result])
     return Count(float(rate), float(np.mean(first)), float(missed))

@@ -8,7 +8,7 @@ from sensorfault.methods.height import drift_setting
 from sensorfault_studies.findings import Effort, Row
 from sensorfault_studies.multistep.beats import Beats, compared
 from sensorfault_studies.multistep.flights import FLIGHTS, flight
-from sensorfault_studies.multistep.slow_judge import HALF, MATCHED, RATES, Judged, Told, judge
+from sensorfault_studies.multistep.slow_judge import HALF, MATCHED, RATES, Judged, Result, judge
 from sensorfault_studies.multistep.slow_rivals import SWEPT, TESTS
 from sensorfault_studies.numbers import Numbers
 
@@ -26,8 +26,10 @@ class Slow:
     data: str
     real: Numbers
     injected: Numbers
-    told: dict[tuple[str, str], Told] = field(default_factory=dict)  # by method and variant; limits of the first half
-    windows: dict[str, dict[float, Told]] = field(default_factory=dict)
+    result: dict[tuple[str, str], Result] = field(
+        default_factory=dict
+    )  # by method and variant; limits of the first half
+    windows: dict[str, dict[float, Result]] = field(default_factory=dict)
 
     def rows(self) -> Iterator[Row]:
         """All numbers."""
@@ -58,7 +60,7 @@ def _flight(name: str, share: tuple[float, float], effort: Effort) -> Slow:
         seen = judge(beats, test, settings)
         _add(found, method, "", seen[0])
         if swept:
-            found.windows[method] = {w: one.told(HALF) for w, one in zip(swept, seen[1:], strict=True)}
+            found.windows[method] = {w: one.judge(HALF) for w, one in zip(swept, seen[1:], strict=True)}
             _add(found, method, SHORT, seen[1 + WINDOWS.index(60.0)])
             _add(found, method, PLAIN, judge(plain, test, settings)[0])  # all of them: compiled already
     return found
@@ -66,11 +68,11 @@ def _flight(name: str, share: tuple[float, float], effort: Effort) -> Slow:
 
 def _add(found: Slow, method: str, variant: str, judged: Judged) -> None:
     """The barometer knows nothing of the receiver's vertical speed, so it is no matter whether that drifts too."""
-    found.told[method, variant] = told = judged.told(HALF)
+    found.result[method, variant] = result = judged.judge(HALF)
     own = f"{variant} {HALF}".strip()
-    found.real.add(own, method, {"far": told.far, "false_events": told.false, "healthy_ratio": told.ratio})
-    conditions = {f"{own} {where}": told for where in WHERE}
-    conditions[f"{variant} {MATCHED} {WHERE[0]}".strip()] = judged.told(MATCHED)
+    found.real.add(own, method, {"far": result.far, "false_events": result.false, "healthy_ratio": result.ratio})
+    conditions = {f"{own} {where}": result for where in WHERE}
+    conditions[f"{variant} {MATCHED} {WHERE[0]}".strip()] = judged.judge(MATCHED)
     for words, one in conditions.items():
         for rate, delay, missed in zip(RATES, one.delay, one.missed, strict=True):
             numbers = {"delay_s": delay.mean(), "missed": missed.mean(), "chance_delay_s": one.chance_s}

@@ -11,12 +11,12 @@ from sensorfault_studies.multistep.slow_judge import RATES
 _SLOWEST = 0  # of RATES
 
 
-def figures(told: Slow) -> tuple[Figure, ...]:
+def figures(result: Slow) -> tuple[Figure, ...]:
     """Of one flight."""
-    return (_delays(told), _flight(told), *_windows(told))
+    return (_delays(result), _flight(result), *_windows(result))
 
 
-def _delays(told: Slow) -> Figure:
+def _delays(result: Slow) -> Figure:
     data: list[Json] = [
         {
             "type": "scatter",
@@ -25,7 +25,7 @@ def _delays(told: Slow) -> Figure:
             "x": list(RATES),
             "y": [round(float(d), 1) for d in one.delay.mean(axis=1)],
         }
-        for (method, variant), one in told.told.items()
+        for (method, variant), one in result.result.items()
         if not variant
     ]
     layout: Json = {
@@ -37,12 +37,12 @@ def _delays(told: Slow) -> Figure:
         "stands in the table."
     )
     return Figure(
-        f"d_slow_delay_{told.data}", f"Delay of slow ramps, {told.data}", caption, {"data": data, "layout": layout}
+        f"d_slow_delay_{result.data}", f"Delay of slow ramps, {result.data}", caption, {"data": data, "layout": layout}
     )
 
 
-def _flight(told: Slow) -> Figure:
-    one = told.told[slope.NAME, ""]
+def _flight(result: Slow) -> Figure:
+    one = result.result[slope.NAME, ""]
     data = [
         _line("with a ramp of 0.1 m/s", one.time, one.ramped),
         _line("as flown", one.time, one.score),
@@ -68,15 +68,18 @@ def _flight(told: Slow) -> Figure:
         "begins at the dashed line."
     )
     return Figure(
-        f"d_slow_score_{told.data}", f"Slope of the difference, {told.data}", caption, {"data": data, "layout": layout}
+        f"d_slow_score_{result.data}",
+        f"Slope of the difference, {result.data}",
+        caption,
+        {"data": data, "layout": layout},
     )
 
 
-def _windows(told: Slow) -> tuple[Figure, ...]:
-    if not told.windows:
+def _windows(result: Slow) -> tuple[Figure, ...]:
+    if not result.windows:
         return ()
     data: list[Json] = []
-    for i, (method, sweep) in enumerate(told.windows.items()):
+    for i, (method, sweep) in enumerate(result.windows.items()):
         delay = np.array([one.delay[_SLOWEST].mean() for one in sweep.values()])
         ratio = np.array([one.ratio for one in sweep.values()])
         for axis, value in (("", delay), ("2", ratio)):
@@ -96,8 +99,8 @@ def _windows(told: Slow) -> tuple[Figure, ...]:
     )
     return (
         Figure(
-            f"d_slow_window_{told.data}",
-            f"How long to look back, {told.data}",
+            f"d_slow_window_{result.data}",
+            f"How long to look back, {result.data}",
             caption,
             {"data": data, "layout": layout},
         ),

@@ -24,7 +24,7 @@ MATCHED = "matched0"  # the largest healthy score of the second half: the lowest
 
 
 @dataclass(frozen=True)
-class Told:
+class Result:
     """Of one test under one limit: scores of the healthy flight; of each rate and onset the delay [s], to the end of
     the flight where nothing was found.
 
@@ -55,7 +55,7 @@ class Judged:
     onsets: Float[np.ndarray, " o"]
     margin: float
 
-    def told(self, learned: str) -> Told:
+    def judge(self, learned: str) -> Result:
         """Under a limit of HALF or MATCHED. What an alarm changes comes after the first alarm."""
         time, score = self.beats.log.time, self.score
         second = time >= self.beats.half
@@ -65,7 +65,7 @@ class Judged:
         delay, found = _first(time, score[1:] > limit, np.tile(onsets, len(RATES)))
         chance, _ = _first(time, np.broadcast_to(score[0] > limit, (len(onsets), len(time))), onsets)
         quiet = score[0, second] > limit
-        return Told(
+        return Result(
             time=time,
             score=score[0],
             ramped=score[1 + middle],
@@ -85,8 +85,8 @@ def judge(beats: Beats, test: DriftTest, settings: Sequence[Setting]) -> list[Ju
     log, end = beats.log, float(beats.log.time[-1])
     onsets = np.arange(beats.half + BEGIN_S, end - LEAST_S, EVERY_S)
     cells = [log, *(beats.with_ramp(rate, float(onset)) for rate in RATES for onset in onsets)]
-    deaf = [_deaf(beats, test, setting) for setting in settings]
-    stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *deaf)
+    uncalibrated = [_deaf(beats, test, setting) for setting in settings]
+    stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *uncalibrated)
     score = watch(stacked, cells).score
     return [Judged(beats, each, onsets, s.margin) for each, s in zip(score, settings, strict=True)]
 

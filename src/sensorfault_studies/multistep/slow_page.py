@@ -6,7 +6,7 @@ from sensorfault.methods.height import drift_setting, ramp_glr, slope
 from sensorfault_studies.findings import Effort, Findings
 from sensorfault_studies.multistep.slow import DRIFT, PLAIN, SHORT, WHERE, Slow, slow
 from sensorfault_studies.multistep.slow_figures import figures
-from sensorfault_studies.multistep.slow_judge import EVERY_S, LEAST_S, MATCHED, RATES, Told
+from sensorfault_studies.multistep.slow_judge import EVERY_S, LEAST_S, MATCHED, RATES, Result
 
 
 def findings(effort: Effort) -> Findings:
@@ -15,14 +15,14 @@ def findings(effort: Effort) -> Findings:
     Raises:
         LogError: the real data are not there.
     """
-    told = slow(effort)
-    rows = tuple(row for one in told for row in one.rows())
-    return Findings(rows, tuple(figure for one in told for figure in figures(one)), remarks(told))
+    result = slow(effort)
+    rows = tuple(row for one in result for row in one.rows())
+    return Findings(rows, tuple(figure for one in result for figure in figures(one)), remarks(result))
 
 
-def remarks(told: Sequence[Slow]) -> tuple[str, ...]:
+def remarks(result: Sequence[Slow]) -> tuple[str, ...]:
     """What the numbers do not say by themselves."""
-    return (_reading(), *(_found(one) for one in told), *(_alike(one) for one in told), *_swept(told))
+    return (_reading(), *(_found(one) for one in result), *(_alike(one) for one in result), *_swept(result))
 
 
 def _reading() -> str:
@@ -39,38 +39,38 @@ def _reading() -> str:
     )
 
 
-def _found(told: Slow) -> str:
+def _found(result: Slow) -> str:
     said = []
     for method in (slope.NAME, ramp_glr.NAME):
-        one = told.told[method, ""]
+        one = result.result[method, ""]
         said.append(f"{method} finds 0.1, 0.3 and 1 m/s after {_times(one)} with {one.false} false events")
     return (
-        f"D-slow, {told.data}: {'; '.join(said)}. The barometer is presumed healthy: the difference of two cannot tell "
-        "who drifts."
+        f"D-slow, {result.data}: {'; '.join(said)}. The barometer is assumed healthy: a difference of two cannot tell "
+        "which of them drifts."
     )
 
 
-def _alike(told: Slow) -> str:
+def _alike(result: Slow) -> str:
     """Which test is the quickest where none is wrong."""
     delay = {
-        method: told.injected.mean(f"{MATCHED} {WHERE[0]}", method, "delay_s", DRIFT, RATES[0])
-        for method, variant in told.told
+        method: result.injected.mean(f"{MATCHED} {WHERE[0]}", method, "delay_s", DRIFT, RATES[0])
+        for method, variant in result.result
         if not variant
     }
     ranked = sorted(delay, key=lambda method: delay[method])
     said = ", ".join(f"{method} {delay[method]:.0f}" for method in ranked)
-    ratios = ", ".join(f"{method} {told.told[method, ''].ratio:.2f}" for method in ranked)
+    ratios = ", ".join(f"{method} {result.result[method, ''].ratio:.2f}" for method in ranked)
     return (
-        f"D-slow, {told.data}, {MATCHED}: mean delay at {RATES[0]} m/s [s]: {said}. What parts the tests under "
+        f"D-slow, {result.data}, {MATCHED}: mean delay at {RATES[0]} m/s [s]: {said}. What parts the tests under "
         "limits that can be known is how much a take-off in the first half moves them more than the flight in the "
         f"second does; largest healthy score of the second half over that of the first: {ratios}."
     )
 
 
-def _swept(told: Sequence[Slow]) -> tuple[str, ...]:
-    if not told[0].windows:
+def _swept(result: Sequence[Slow]) -> tuple[str, ...]:
+    if not result[0].windows:
         return ()
-    clean = [{w for w, one in each.windows[slope.NAME].items() if one.false == 0} for each in told]
+    clean = [{w for w, one in each.windows[slope.NAME].items() if one.false == 0} for each in result]
     windows = ", ".join(f"{w:g}" for w in sorted(set.intersection(*clean)))
     return (
         f"D-slow: the window of {drift_setting.DEFAULT.window_s:g} s was chosen on these two flights, which are all "
@@ -79,5 +79,5 @@ def _swept(told: Sequence[Slow]) -> tuple[str, ...]:
     )
 
 
-def _times(one: Told) -> str:
+def _times(one: Result) -> str:
     return " / ".join(f"{d:.0f}" for d in one.delay.mean(axis=1)) + " s"

@@ -27,18 +27,18 @@ def study(effort: Effort) -> Findings:
         LogError: a flight is not there; said before any work is done.
     """
     real("uav")
-    told = drifts(replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED * share)))
-    rows = tuple(row for one in told for row in rows_of(one))
-    figures = tuple(figure for one in told for figure in of_drift(one))
-    over_steps = Findings(rows, figures, remarks(told))
+    result = drifts(replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED * share)))
+    rows = tuple(row for one in result for row in rows_of(one))
+    figures = tuple(figure for one in result for figure in of_drift(one))
+    over_steps = Findings(rows, figures, remarks(result))
     by_the_minute = replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED + (1 - STEPPED) * share))
     return over_steps + slow_page.findings(by_the_minute) + who.findings(by_the_minute)
 
 
-def rows_of(told: Drift) -> Iterator[Row]:
+def rows_of(result: Drift) -> Iterator[Row]:
     """With the paper's numbers beside its own method under its own threshold."""
-    yield from told.real.rows()
-    for row in told.injected.rows():
+    yield from result.real.rows()
+    for row in result.injected.rows():
         own = row.method == NETWORK and row.condition.startswith(PRINTED)
         paper = PAPER.get((row.condition.split()[-1], row.magnitude), {}) if own else {}
         yield replace(row, paper=paper.get(row.metric))

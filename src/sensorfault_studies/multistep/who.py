@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Bool
 from scipy.stats import chi2
 
-from sensorfault.calibration.open_loop import deaf
+from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.types import FAULT
 from sensorfault.faults.fault import Fault
@@ -54,7 +54,7 @@ class Ramp:
         faults = []
         for path in paths.get(self.what, ("gnss.altitude", "gnss.down")):
             channel = log.channels[log.index(path)]
-            kind, size = ("bias", -self.rate) if channel.name == "down" else ("drift", self.rate)
+            kind, size = ("offset", -self.rate) if channel.name == "down" else ("drift", self.rate)
             size = from_si(size, channel.unit)
             faults.append(Fault(kind, channel.sensor, channel.name, self.onset_s, LASTS_S, size))
         return inject(log, faults).log
@@ -66,8 +66,8 @@ def findings(effort: Effort) -> Findings:
     Raises:
         LogError: the real data are not there.
     """
-    told = [_flown(name, effort) for name in FLIGHTS]
-    return Findings(tuple(row for one in told for row in one.rows()), (), _remarks(told))
+    result = [_flown(name, effort) for name in FLIGHTS]
+    return Findings(tuple(row for one in result for row in one.rows()), (), _remarks(result))
 
 
 def _flown(name: str, effort: Effort) -> Numbers:
@@ -81,9 +81,9 @@ def _flown(name: str, effort: Effort) -> Numbers:
         healthy = replay_log(monitor, rest)
         for what, rate, onset in product(SENSOR, RATES, onsets):
             ramp = Ramp(what, rate, float(onset))
-            told = judged(replay_log(monitor, ramp.on(rest)), rest, ramp)
-            told |= {"chance": float(_during(healthy.sample, rest, ramp).any())}
-            numbers.add(f"{what} {variant}".strip(), method, told, "drift", rate)
+            result = judged(replay_log(monitor, ramp.on(rest)), rest, ramp)
+            result |= {"chance": float(_during(healthy.sample, rest, ramp).any())}
+            numbers.add(f"{what} {variant}".strip(), method, result, "drift", rate)
     return numbers
 
 
@@ -100,7 +100,7 @@ def _rivals(healthy: Log) -> dict[tuple[str, str], Monitor]:
 
 def calmed(gated: Monitor, log: Log) -> Monitor:
     """Under limits that nothing healthy passes once the filter has settled, by a margin."""
-    score = np.asarray(replay_log(deaf(gated), log).scores[0])[log.time > log.time[0] + SETTLED_S]
+    score = np.asarray(replay_log(uncalibrated(gated), log).scores[0])[log.time > log.time[0] + SETTLED_S]
     (branch,) = gated.branches
     limit = Fixed(jnp.asarray(MARGIN * np.nanmax(score, axis=0)))
     return replace(gated, branches=(replace(branch, threshold=limit),))
@@ -125,11 +125,11 @@ def gate(log: Log) -> Monitor:
     )
 
 
-def judged(told: Replayed, log: Log, ramp: Ramp) -> dict[str, float]:
+def judged(result: Replayed, log: Log, ramp: Ramp) -> dict[str, float]:
     """Of one ramp, while it lasts: whether something was wrong, after how long [s], and who was named."""
-    wrong = _during(told.sample, log, ramp)
+    wrong = _during(result.sample, log, ramp)
     times = log.time[(log.time >= ramp.onset_s) & (log.time < ramp.onset_s + LASTS_S)]
-    named = {channel.sensor for c, channel in enumerate(log.channels) if _during(told.channel[:, c], log, ramp).any()}
+    named = {channel.sensor for c, channel in enumerate(log.channels) if _during(result.channel[:, c], log, ramp).any()}
     return {
         "detection_rate": float(wrong.any()),
         "delay_s": float(times[wrong][0] - ramp.onset_s) if wrong.any() else LASTS_S,
@@ -143,7 +143,7 @@ def _during(verdict: np.ndarray | Array, log: Log, ramp: Ramp) -> Bool[np.ndarra
     return np.asarray(np.asarray(verdict)[rows] == FAULT)
 
 
-def _remarks(told: Sequence[Numbers]) -> tuple[str, ...]:
+def _remarks(result: Sequence[Numbers]) -> tuple[str, ...]:
     jump, drift = height_agreement.MARGIN * height_agreement.FINEST_M
     return (
         f"D-who: ramps of {LASTS_S:g} s in the second half, an onset every {EVERY_S:g} s (the seeds of a row); named: "
@@ -155,7 +155,7 @@ def _remarks(told: Sequence[Numbers]) -> tuple[str, ...]:
         "answer is that something is wrong, and nobody is named. The least limits of "
         f"{height_agreement.NAME}, {jump:.3g} m for a jump and {drift:.3g} m for a drift, were set after seeing these "
         "flights and two copters', which pass lower ones in health.",
-        *(sentence for one in told for sentence in _said(one)),
+        *(sentence for one in result for sentence in _said(one)),
     )
 
 

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from sensorfault.runtime.model import Model
 from sensorfault.simulation.arm import AS_PRINTED, PHYSICAL
 from sensorfault_studies.findings import Effort, Row
-from sensorfault_studies.niu1998.fleet import Told, watch, with_limits
+from sensorfault_studies.niu1998.fleet import Result, watch, with_limits
 from sensorfault_studies.niu1998.rivals import KALMAN, Rival, of_two_links
 from sensorfault_studies.niu1998.run import (
     COLUMNS,
@@ -43,7 +43,7 @@ class Drifts:
     """Numbers of all rivals, and what the first network of the first seed said of the paper's run."""
 
     numbers: Numbers = field(default_factory=lambda: Numbers("B", "arm", "simulated"))
-    shown: dict[str, tuple[Told, Float[np.ndarray, "N T C"]]] = field(default_factory=dict)
+    shown: dict[str, tuple[Result, Float[np.ndarray, "N T C"]]] = field(default_factory=dict)
 
     def rows(self) -> Iterator[Row]:
         """With the paper's samples and thresholds beside those that are as printed."""
@@ -54,7 +54,7 @@ class Drifts:
 
 def drifts(effort: Effort) -> Drifts:
     """Every rival on both arms; the sweep and the start from rest as printed only."""
-    told = Drifts()
+    result = Drifts()
     seeds = 1 if effort.quick else effort.seeds
     done = 0
     for name, setting in SETTINGS.items():
@@ -64,13 +64,13 @@ def drifts(effort: Effort) -> Drifts:
                 effort.tell(f"{rival.method} on the paper's arm, {name}", done / (len(SETTINGS) * len(rivals) * seeds))
                 watched = Watched.of(rival, setting, seed)
                 limited = watched.at_rate()
-                _judge(told, name, rival, watched, limited)
+                _judge(result, name, rival, watched, limited)
                 if setting is AS_PRINTED:
-                    _elsewhere(told.numbers, name, rival, watched, limited)
-                    _sweep(told.numbers, name, rival, watched, limited, QUICK if effort.quick else SLOWER)
-                    _from_rest(told.numbers, rival, seed)
+                    _elsewhere(result.numbers, name, rival, watched, limited)
+                    _sweep(result.numbers, name, rival, watched, limited, QUICK if effort.quick else SLOWER)
+                    _from_rest(result.numbers, rival, seed)
                 done += 1
-    return told
+    return result
 
 
 def _by_path(limit: Float[np.ndarray, " C"]) -> Mapping[str, float]:
@@ -78,7 +78,7 @@ def _by_path(limit: Float[np.ndarray, " C"]) -> Mapping[str, float]:
     return dict(zip(paths, limit[list(JUDGED)].tolist(), strict=True))
 
 
-def _judge(told: Drifts, name: str, rival: Rival, watched: Watched, limited: Model) -> None:
+def _judge(result: Drifts, name: str, rival: Rival, watched: Watched, limited: Model) -> None:
     """Both drifts, each of two thresholds a sample, under the paper's thresholds and at one rate of false alarms."""
     limit = theta(watched.setting)
     printed = watched.model if rival.method == KALMAN else with_limits(watched.model, limit)
@@ -92,16 +92,16 @@ def _judge(told: Drifts, name: str, rival: Rival, watched: Watched, limited: Mod
         numbers["untested"] = 1 - seen.tested[:, :ONSET, JUDGED].mean()
         if rival.method != KALMAN:
             numbers |= {f"theta_{y}": seen.limit[column] for y, column in zip(NAMES, COLUMNS, strict=True)}
-        told.numbers.add(words, rival.method, numbers, "drift")
-        told.shown.setdefault(f"{words} {rival.method}", (seen, np.stack([log.value for log in drifting])))
-    _errors(told.numbers, condition, rival, watched)
+        result.numbers.add(words, rival.method, numbers, "drift")
+        result.shown.setdefault(f"{words} {rival.method}", (seen, np.stack([log.value for log in drifting])))
+    _errors(result.numbers, condition, rival, watched)
 
 
 def _errors(numbers: Numbers, condition: str, rival: Rival, watched: Watched) -> None:
     """One-step errors of both joint rates and of y2 alone where nothing lies, with the sensors' noise and without."""
     runs = {condition: watched.healthy(), f"{condition} noise-free": watched.healthy(0.0)}
     for words, logs in runs.items():
-        seen = watch(watched.deaf, logs)
+        seen = watch(watched.uncalibrated, logs)
         errors = {"rms": increment_error(seen), "rms_y2": increment_error(seen, (COLUMNS[0],))}
         numbers.add(words, rival.method, errors)
 

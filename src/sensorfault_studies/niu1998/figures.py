@@ -7,7 +7,7 @@ from jaxtyping import Float, Int
 
 from sensorfault_studies.findings import Figure, Json, Row
 from sensorfault_studies.niu1998.drifts import AT_RATE, NAMES, Drifts
-from sensorfault_studies.niu1998.fleet import Told
+from sensorfault_studies.niu1998.fleet import Result
 from sensorfault_studies.niu1998.joints import PATHS
 from sensorfault_studies.niu1998.rivals import NETWORK, SCRATCH
 from sensorfault_studies.niu1998.run import COLUMNS, ONSET, WITHIN
@@ -18,15 +18,15 @@ NUMBERS = {"y2": (3, 4), "y4": (5, 6)}  # of the paper's figures
 NETWORKS = {f"{PRINTED} {NETWORK}": "taught before", f"{PRINTED} {SCRATCH} {NETWORK}": "from scratch"}
 
 
-def of_the_run(told: Drifts) -> tuple[Figure, ...]:
+def of_the_run(result: Drifts) -> tuple[Figure, ...]:
     """Of the first run: prediction and measurement, residual and threshold, of y2 and y4."""
-    return tuple(figure for i in range(2) for figure in (_prediction(told, i), _residual(told, i)))
+    return tuple(figure for i in range(2) for figure in (_prediction(result, i), _residual(result, i)))
 
 
-def _prediction(told: Drifts, i: int) -> Figure:
+def _prediction(result: Drifts, i: int) -> Figure:
     y, column = NAMES[i], COLUMNS[i]
-    lines = [_line(f"expected, {name}", _expected(told.shown[key][0], column)) for key, name in NETWORKS.items()]
-    value = told.shown[next(iter(NETWORKS))][1][0, :, column]
+    lines = [_line(f"expected, {name}", _expected(result.shown[key][0], column)) for key, name in NETWORKS.items()]
+    value = result.shown[next(iter(NETWORKS))][1][0, :, column]
     plot: Json = {"data": [_line("measured", value), *lines], "layout": _axes(f"{y} [{UNITS[y]}]")}
     caption = (
         f"The paper's figure {NUMBERS[y][0]}: from sample {ONSET} on the sensor drifts by two thresholds a sample; the "
@@ -35,18 +35,18 @@ def _prediction(told: Drifts, i: int) -> Figure:
     return Figure(f"b_prediction_{y}", f"Prediction and measurement of {y}", caption, plot)
 
 
-def _expected(told: Told, column: int) -> Float[np.ndarray, " T"]:
+def _expected(result: Result, column: int) -> Float[np.ndarray, " T"]:
     """From the second sample on: at the first nothing is known."""
-    after = np.arange(told.expected.shape[1]) > 0
-    return np.where(after, told.expected[0, :, column], np.nan)
+    after = np.arange(result.expected.shape[1]) > 0
+    return np.where(after, result.expected[0, :, column], np.nan)
 
 
-def _residual(told: Drifts, i: int) -> Figure:
+def _residual(result: Drifts, i: int) -> Figure:
     y, column = NAMES[i], COLUMNS[i]
-    lines = [_line(f"residual, {name}", told.shown[key][0].score[0, :, column]) for key, name in NETWORKS.items()]
-    limit = float(told.shown[next(iter(NETWORKS))][0].limit[column])
+    lines = [_line(f"residual, {name}", result.shown[key][0].score[0, :, column]) for key, name in NETWORKS.items()]
+    limit = float(result.shown[next(iter(NETWORKS))][0].limit[column])
     layout = _axes(f"|{y} - expected| [{UNITS[y]}]") | {"yaxis": {"type": "log", "title": {"text": f"[{UNITS[y]}]"}}}
-    threshold = _line("threshold", np.full(len(told.shown[next(iter(NETWORKS))][1][0]), limit)) | {
+    threshold = _line("threshold", np.full(len(result.shown[next(iter(NETWORKS))][1][0]), limit)) | {
         "line": {"dash": "dot"}
     }
     caption = f"The paper's figure {NUMBERS[y][1]}; nothing is shown where nothing could be tested."

@@ -20,7 +20,7 @@ BATCH = 128  # logs at once: one compilation for any number of them
 
 
 @dataclass(frozen=True)
-class Told:
+class Result:
     """What a model says of N logs: verdicts, each sensor's own score and limit (NaN where it was not tested), residual
     and expected value [SI].
     """
@@ -42,7 +42,7 @@ class Told:
         return np.asarray(np.isfinite(self.score))
 
 
-def watch(model: Model, logs: Sequence[Log]) -> Told:
+def watch(model: Model, logs: Sequence[Log]) -> Result:
     """Each log from a fresh start; all have the model's channels and one length."""
     kept = []
     for start in range(0, len(logs), BATCH):
@@ -56,7 +56,7 @@ def watch(model: Model, logs: Sequence[Log]) -> Told:
     score, limit = np.full(channel.shape, np.nan), np.full(channel.shape[2], np.nan)
     columns = _columns(model, scores.shape[2])
     score[:, :, columns], limit[columns] = scores, limits[0, -1]
-    return Told(channel, score, limit, residual, expected)
+    return Result(channel, score, limit, residual, expected)
 
 
 @jax.jit

@@ -11,7 +11,7 @@ from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log
 from sensorfault.runtime.model import Model
-from sensorfault_studies.niu1998.fleet import Told, watch, with_limits
+from sensorfault_studies.niu1998.fleet import Result, watch, with_limits
 from sensorfault_studies.niu1998.schunk import JOINTS
 
 WINDOW, ONSET, LASTING = 150, 100, 25  # ticks: of a stretch of a run, until its fault begins, and for how long
@@ -21,8 +21,8 @@ SENSORS = 2 * JOINTS
 FIFTH = 5  # of the runs, the last, are another motion
 GROUPS = {"tachometers": slice(0, JOINTS), "encoders": slice(JOINTS, SENSORS), "all": slice(0, SENSORS)}
 SIZES = (3.0, 5.0, 10.0, 20.0)
-OFFSETS = ("short", "bias", "drift", "noise")  # whose size is counted in one-step errors (of a drift, a sample)
-OTHERS = {"jam": LASTING, "scale": 1.5, "delay": 5, "miss": LASTING}  # ticks; a factor; ticks; ticks
+OFFSETS = ("spike", "offset", "drift", "noise")  # whose size is counted in one-step errors (of a drift, a sample)
+OTHERS = {"frozen": LASTING, "scale": 1.5, "delay": 5, "missing": LASTING}  # ticks; a factor; ticks; ticks
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def trials(healthy: Sequence[Log], unit: Float[np.ndarray, " C"], each: int, see
     found = []
     for kind, size in wanted:
         for column in range(SENSORS):
-            for log in _drawn(healthy, column, 5 * unit[column] if kind == "jam" else 0.0, each, rng):
+            for log in _drawn(healthy, column, 5 * unit[column] if kind == "frozen" else 0.0, each, rng):
                 faulty = inject(log, [_fault(kind, float(size), log, column, unit[column], rng)], seed).log
                 found.append(Trial(kind, float(size), column, faulty))
     return found
@@ -96,14 +96,14 @@ def _fault(kind: str, size: float, log: Log, column: int, unit: float, rng: np.r
     channel, tick_s = log.channels[column], log.period_s
     offset = size * unit * float(rng.choice((-1.0, 1.0)))
     magnitude = {
-        "short": offset,
-        "bias": offset,
+        "spike": offset,
+        "offset": offset,
         "drift": offset / tick_s,
         "noise": abs(offset),
         "scale": size,
         "delay": size * tick_s,
     }.get(kind, 0.0)
-    lasting = 0.0 if kind == "short" else (LASTING - 0.5) * tick_s
+    lasting = 0.0 if kind == "spike" else (LASTING - 0.5) * tick_s
     return Fault(kind, channel.sensor, channel.name, float(log.time[ONSET]), lasting, magnitude)
 
 
@@ -120,9 +120,9 @@ class Isolated:
     delay: Float[np.ndarray, " N"]
 
 
-def isolated(told: Told, column: Int[np.ndarray, " N"]) -> Isolated:
+def isolated(result: Result, column: Int[np.ndarray, " N"]) -> Isolated:
     """By the first alarm while the fault lasts."""
-    fault = told.fault[:, :, :SENSORS]
+    fault = result.fault[:, :, :SENSORS]
     calm = ~np.asarray(fault[:, ONSET - CALM : ONSET].any(axis=(1, 2)))
     during = fault[:, ONSET : ONSET + LASTING]
     alarm = np.asarray(during.any(axis=2))
@@ -133,16 +133,16 @@ def isolated(told: Told, column: Int[np.ndarray, " N"]) -> Isolated:
     return Isolated(calm, right, named, np.where(alarm.any(axis=1), at, np.nan))
 
 
-def missed(told: Told, column: Int[np.ndarray, " N"]) -> Bool[np.ndarray, " N"]:
+def missed(result: Result, column: Int[np.ndarray, " N"]) -> Bool[np.ndarray, " N"]:
     """Trials in which a silent sensor was unknown all the while, and no other accused."""
-    during = told.channel[:, ONSET : ONSET + LASTING, :SENSORS]
+    during = result.channel[:, ONSET : ONSET + LASTING, :SENSORS]
     unknown = np.asarray(during[np.arange(len(during)), :, column] == UNKNOWN)
-    return np.asarray(unknown.all(axis=1) & ~told.fault[:, ONSET : ONSET + LASTING].any(axis=(1, 2)))
+    return np.asarray(unknown.all(axis=1) & ~result.fault[:, ONSET : ONSET + LASTING].any(axis=(1, 2)))
 
 
-def one_step_error(told: Told) -> Float[np.ndarray, "12"]:
+def one_step_error(result: Result) -> Float[np.ndarray, "12"]:
     """Root mean square of each sensor's residual where it was tested [SI]."""
-    residual = np.where(told.tested, told.residual, np.nan)[:, :, :SENSORS]
+    residual = np.where(result.tested, result.residual, np.nan)[:, :, :SENSORS]
     return np.asarray(np.sqrt(np.nanmean(residual**2, axis=(0, 1))))
 
 
@@ -152,7 +152,7 @@ class Calibrated:
     [SI], and limits by the names of RATES, all twelve sensors alike.
     """
 
-    deaf: Model
+    uncalibrated: Model
     unit: Float[np.ndarray, " C"]
     limits: Mapping[str, Float[np.ndarray, " C"]]
 
@@ -160,12 +160,12 @@ class Calibrated:
     def of(cls, model: Model, healthy: Sequence[Log]) -> "Calibrated":
         """From scores without consequences."""
         many = len(model.channels)
-        deaf = with_limits(model, np.full(many, np.inf))
-        told = watch(deaf, healthy)
-        score, unit = told.score[:, :, :SENSORS], np.ones(many)
-        unit[:SENSORS] = one_step_error(told)
+        uncalibrated = with_limits(model, np.full(many, np.inf))
+        result = watch(uncalibrated, healthy)
+        score, unit = result.score[:, :, :SENSORS], np.ones(many)
+        unit[:SENSORS] = one_step_error(result)
         limits = {}
         for name, rate in RATES.items():
             limits[name] = np.full(many, np.inf)
             limits[name][:SENSORS] = np.nanquantile(score, 1 - rate / SENSORS, axis=(0, 1))
-        return cls(deaf, unit, limits)
+        return cls(uncalibrated, unit, limits)

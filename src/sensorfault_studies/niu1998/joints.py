@@ -11,7 +11,7 @@ from sensorfault.runtime.model import Model
 from sensorfault.simulation.arm import channels
 from sensorfault_studies.data import real
 from sensorfault_studies.findings import Effort
-from sensorfault_studies.niu1998.fleet import Told, watch, with_limits
+from sensorfault_studies.niu1998.fleet import Result, watch, with_limits
 from sensorfault_studies.niu1998.isolation import (
     GROUPS,
     SENSORS,
@@ -33,9 +33,9 @@ DATA = "schunk"
 EACH, QUICK_EACH = 8, 3  # faults of every kind and size on every sensor, for each seed
 PATHS = tuple(channel.path for channel in channels(JOINTS)[:SENSORS])
 APART = PATHS[:JOINTS], PATHS[JOINTS:]  # rates are foretold without angles, angles without rates: no twin tells
-SINGLE = ("short", "bias", "jam")  # the faults by which isolation is judged
+SINGLE = ("spike", "offset", "frozen")  # the faults by which isolation is judged
 NEW = "new-motion"
-TIMED = ("jam", "delay", "miss")
+TIMED = ("frozen", "delay", "missing")
 SHOWN, ALL = "far1e-2", "all"
 
 
@@ -54,17 +54,17 @@ def joints(effort: Effort) -> Joints:
     Raises:
         LogError: the runs are not there.
     """
-    told = Joints()
+    result = Joints()
     logs = runs(real("arm") / ARCHIVE)
     splits = [("", Runs.of(logs, seed)) for seed in range(1 if effort.quick else effort.seeds)]
     splits.append((NEW, Runs.of_another_motion(logs)))
     for seed, (words, parts) in enumerate(splits):
         effort.tell(f"the real arm {words}".strip(), seed / len(splits))
-        _judge(told, words, parts, seed, effort.quick)
-    return told
+        _judge(result, words, parts, seed, effort.quick)
+    return result
 
 
-def _judge(told: Joints, split: str, parts: Runs, seed: int, quick: bool) -> None:
+def _judge(result: Joints, split: str, parts: Runs, seed: int, quick: bool) -> None:
     other, judged = stretches(parts.other), stretches(parts.judged)
     faults: list[Trial] = []
     first, *others = of_six_joints(APART)
@@ -73,55 +73,55 @@ def _judge(told: Joints, split: str, parts: Runs, seed: int, quick: bool) -> Non
         own = Calibrated.of(rival.build(joined(parts.learned), seed), other)
         if rival == first:
             faults = trials(judged, own.unit, QUICK_EACH if quick else EACH, seed, quick or split == NEW)
-        _quiet(told, words, rival, own, judged)
+        _quiet(result, words, rival, own, judged)
         for rate, limit in own.limits.items():
             condition = f"{rate} {words}".strip()
-            _isolate(told, condition, rival, with_limits(own.deaf, limit), faults, judged)
+            _isolate(result, condition, rival, with_limits(own.uncalibrated, limit), faults, judged)
 
 
-def _quiet(told: Joints, words: str, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
+def _quiet(result: Joints, words: str, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
     """One-step errors, the median over six sensors; and how often a score passes its limit where nothing lies."""
-    seen = watch(own.deaf, healthy)
+    seen = watch(own.uncalibrated, healthy)
     score, error = seen.score, one_step_error(seen)
     for group in ("tachometers", "encoders"):
-        told.real.add(f"{group} {words}".strip(), rival.method, {"rms": float(np.median(error[GROUPS[group]]))})
+        result.real.add(f"{group} {words}".strip(), rival.method, {"rms": float(np.median(error[GROUPS[group]]))})
     for rate, limit in own.limits.items():
         far = float((np.nan_to_num(score) > limit).any(axis=2).mean())
-        told.real.add(f"{rate} {words}".strip(), rival.method, {"far": far})
+        result.real.add(f"{rate} {words}".strip(), rival.method, {"far": far})
 
 
 def _isolate(
-    told: Joints, words: str, rival: Rival, model: Model, faults: Sequence[Trial], healthy: Sequence[Log]
+    result: Joints, words: str, rival: Rival, model: Model, faults: Sequence[Trial], healthy: Sequence[Log]
 ) -> None:
     """As it runs: right isolation of every kind and size, over stretches that were calm before, with chance beside."""
     quiet = watch(model, healthy)
     far, calm = quiet.fault.any(axis=2).mean(), isolated(quiet, np.zeros(len(healthy), int)).calm.mean()
-    told.real.add(f"{words} as-run", rival.method, {"far": float(far), "calm": float(calm)})
+    result.real.add(f"{words} as-run", rival.method, {"far": float(far), "calm": float(calm)})
     chance = np.array([_chance(quiet, column) for column in range(SENSORS)])
     seen = watch(model, [trial.log for trial in faults])
     column = np.array([trial.column for trial in faults])
     became, silent = isolated(seen, column), missed(seen, column)
     kinds = [(trial.kind, trial.size) for trial in faults]
-    five = np.array([kind in SINGLE and (kind == "jam" or size == 5.0) for kind, size in kinds]) & became.calm
+    five = np.array([kind in SINGLE and (kind == "frozen" or size == 5.0) for kind, size in kinds]) & became.calm
     pooled = {"detection_rate": _mean(became.right[five])}
-    told.injected.add(f"{words} {ALL}", rival.method, pooled, " or ".join(SINGLE))
+    result.injected.add(f"{words} {ALL}", rival.method, pooled, " or ".join(SINGLE))
     for kind, size in dict.fromkeys(kinds):
         mine = np.array([one == (kind, size) for one in kinds]) & became.calm
         for group, part in (GROUPS if words == SHOWN else {ALL: GROUPS[ALL]}).items():
             rows = mine & np.isin(column, np.arange(SENSORS)[part])
-            if kind == "miss":
+            if kind == "missing":
                 numbers = {"detection_rate": _mean(silent[rows])}
             else:
                 numbers = {"detection_rate": _mean(became.right[rows]), "chance": float(chance[part].mean())}
                 numbers["delay_steps"] = _median(became.delay[rows & became.right])
-            told.injected.add(f"{words} {group}", rival.method, numbers, kind, _size(kind, size))
+            result.injected.add(f"{words} {group}", rival.method, numbers, kind, _size(kind, size))
     if rival.method == NETWORK and words == SHOWN:
         for i in np.flatnonzero(five):
-            told.accused[column[i], :SENSORS] += became.named[i]
-            told.accused[column[i], SENSORS] += not became.named[i].any()
+            result.accused[column[i], :SENSORS] += became.named[i]
+            result.accused[column[i], SENSORS] += not became.named[i].any()
 
 
-def _chance(quiet: Told, column: int) -> float:
+def _chance(quiet: Result, column: int) -> float:
     """How often it would pass for a fault of this sensor that nothing lies."""
     became = isolated(quiet, np.full(len(quiet.channel), column))
     return _mean(became.right[became.calm])

@@ -24,7 +24,7 @@ from sensorfault_studies.niu1998.schunk import PERIOD_S
 PRINTED = "as-printed"
 HARDER = "far1e-3"
 EXTRAPOLATION = PLAIN[1]
-FIVE = {"short": 5.0, "bias": 5.0, "jam": LASTING * PERIOD_S}
+FIVE = {"spike": 5.0, "offset": 5.0, "frozen": LASTING * PERIOD_S}
 
 
 def remarks(run: Drifts, arm: Joints, effort: Effort) -> tuple[str, ...]:
@@ -92,7 +92,7 @@ def _errors(run: Drifts) -> str:
     def error(words: str, method: str) -> str:
         return f"{run.numbers.mean(words, method, 'rms_y2'):.4f}"
 
-    told = []
+    result = []
     for start in ("", " from-rest"):
         free = [
             error(f"{PRINTED}{start} {AS_PRINTED} noise-free", NETWORK),
@@ -100,15 +100,15 @@ def _errors(run: Drifts) -> str:
             error(f"{PRINTED}{start} noise-free", NETWORK),
             error(f"{PRINTED}{start} noise-free", EXTRAPOLATION),
         ]
-        told.append(
+        result.append(
             f"absolute values learned from scratch {free[0]}, persistence {free[1]}, increments {free[2]}, linear "
             f"extrapolation {free[3]}"
         )
     noisy = [error(PRINTED, method) for method in (NETWORK, EXTRAPOLATION, KALMAN)]
     return (
-        f"B: one-step error of the second joint's rate without noise [rad/s], with the printed input: {told[0]}; from "
-        f"rest: {told[1]}. With the paper's noise a straight line pays with √6 times that noise ({noisy[1]}), the "
-        f"network averages ({noisy[0]}), and what the filter leaves is nearly the sensor's own ({noisy[2]})."
+        f"B: one-step error of the second joint's rate without noise [rad/s], with the printed input: {result[0]}; "
+        f"from rest: {result[1]}. With the paper's noise a straight line pays with √6 times that noise ({noisy[1]}), "
+        f"the network averages ({noisy[0]}), and what the filter leaves is nearly the sensor's own ({noisy[2]})."
     )
 
 

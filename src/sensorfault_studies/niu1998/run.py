@@ -12,7 +12,7 @@ from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log
 from sensorfault.runtime.model import Model
 from sensorfault.simulation.arm import PERIOD_S, SAMPLES, VARIANCE, Setting, motion, run
-from sensorfault_studies.niu1998.fleet import Told, watch, with_limits
+from sensorfault_studies.niu1998.fleet import Result, watch, with_limits
 from sensorfault_studies.niu1998.rivals import Rival
 
 ONSET = 50
@@ -45,7 +45,7 @@ class Watched:
         return cls(setting, rival.build(learned, seed), range(RUNS * seed, RUNS * (seed + 1)))
 
     @property
-    def deaf(self) -> Model:
+    def uncalibrated(self) -> Model:
         """With its limits off."""
         return with_limits(self.model, np.full(len(self.model.channels), np.inf))
 
@@ -61,7 +61,9 @@ class Watched:
 
     def at_rate(self) -> Model:
         """With limits under which FAR of healthy runs raise an alarm before the onset, all four sensors alike."""
-        score = watch(self.deaf, [_run(self.setting, OTHERS + seed) for seed in range(CALIBRATED)]).score[:, :ONSET]
+        score = watch(self.uncalibrated, [_run(self.setting, OTHERS + seed) for seed in range(CALIBRATED)]).score[
+            :, :ONSET
+        ]
         largest = np.nanmax(np.where(np.isnan(score), 0.0, score), axis=1)
         limit = np.full(len(self.model.channels), np.inf)
         limit[list(JUDGED)] = np.quantile(largest[:, JUDGED], 1 - FAR / len(JUDGED), axis=0)
@@ -89,22 +91,22 @@ def theta(setting: Setting) -> Float[np.ndarray, " C"]:
     return limit
 
 
-def first(told: Told, column: int) -> Int[np.ndarray, " N"]:
+def first(result: Result, column: int) -> Int[np.ndarray, " N"]:
     """Sample of the first alarm on a sensor from the onset on; SAMPLES if there is none."""
-    fault = told.fault[:, ONSET:, column]
+    fault = result.fault[:, ONSET:, column]
     return np.asarray(np.where(fault.any(axis=1), ONSET + fault.argmax(axis=1), SAMPLES))
 
 
-def early(told: Told) -> Bool[np.ndarray, " N"]:
+def early(result: Result) -> Bool[np.ndarray, " N"]:
     """Whether anything was accused before the onset."""
-    return np.asarray(told.fault[:, :ONSET].any(axis=(1, 2)))
+    return np.asarray(result.fault[:, :ONSET].any(axis=(1, 2)))
 
 
-def found_soon(told: Told) -> Bool[np.ndarray, " N"]:
+def found_soon(result: Result) -> Bool[np.ndarray, " N"]:
     """Whether both drifts were found at sample 51 or 52."""
-    return np.asarray(np.all([np.isin(first(told, column), SOON) for column in COLUMNS], axis=0))
+    return np.asarray(np.all([np.isin(first(result, column), SOON) for column in COLUMNS], axis=0))
 
 
-def increment_error(told: Told, columns: Sequence[int] = RATES) -> float:
+def increment_error(result: Result, columns: Sequence[int] = RATES) -> float:
     """Root mean square of the one-step error from the onset on, of runs in which nothing lies [SI]."""
-    return float(np.sqrt(np.mean(told.residual[:, ONSET:, list(columns)] ** 2)))
+    return float(np.sqrt(np.mean(result.residual[:, ONSET:, list(columns)] ** 2)))

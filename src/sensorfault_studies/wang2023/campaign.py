@@ -64,12 +64,12 @@ def _some(monitor: Monitor, of: Case, error: Float[np.ndarray, "N E S"]) -> Flow
     """At most TOGETHER of them; the rest of as many is flown for nothing, so that all are compiled once."""
     value = np.repeat(of.epochs.value[None], TOGETHER, axis=0)
     value[: len(error), :, : error.shape[2]] += error
-    told = Navigated(*(one[: len(error)] for one in many(monitor, of.epochs, value)))
-    innovation = np.where(told.tested, told.innovation, np.nan)
-    off_m = horizontal(told.position, of.position)
-    return Flown(told.flagged, told.score, off_m, innovation, innovation / told.sigma)
+    result = Navigated(*(one[: len(error)] for one in many(monitor, of.epochs, value)))
+    innovation = np.where(result.tested, result.innovation, np.nan)
+    off_m = horizontal(result.position, of.position)
+    return Flown(result.flagged, result.score, off_m, innovation, innovation / result.sigma)
 
 
-def false_alarms(told: Flown) -> float:
+def false_alarms(result: Flown) -> float:
     """Share of the epochs of healthy runs in which some satellite is flagged."""
-    return float(told.flagged[:, SETTLED:].any(axis=2).mean())
+    return float(result.flagged[:, SETTLED:].any(axis=2).mean())

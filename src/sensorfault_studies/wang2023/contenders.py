@@ -16,8 +16,8 @@ from sensorfault.methods.gnss import innovation_tests, lof_efd, rail
 from sensorfault.methods.gnss.gnss_ins import Filter, monitor, navigation
 from sensorfault.numerics.blocks import enough
 from sensorfault.stages.residual.ins_gnss import InsGnss
-from sensorfault.stages.statistic.averaged_baarda_w import AveragedFreed
-from sensorfault.stages.statistic.baarda_w import Freed
+from sensorfault.stages.statistic.averaged_baarda_w import AveragedBaardaW
+from sensorfault.stages.statistic.baarda_w import BaardaW
 from sensorfault.stages.statistic.cumulative_bank import CumulativeBank
 from sensorfault.stages.statistic.mahalanobis import Mahalanobis
 from sensorfault.stages.statistic.means import Means
@@ -28,7 +28,7 @@ from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.outlier_factor import fit_history
 from sensorfault_studies.wang2023.campaign import SETTLED, Case, flown
 
-NONE, LOF, CHI_SQUARE, ALONE, OURS = "no-exclusion", "lof-efd", "innovation-chi-square", "leave-one-out", "train"
+NONE, LOF, CHI_SQUARE, ALONE, OURS = "no-exclusion", "lof-efd", "innovation-chi-square", "leave-one-out", "rail"
 AIME_S = 10.0, 30.0, 60.0
 CUMULATIVE, FEATURES = (1, 5, 10, 20, 40), (1, 10, 30)  # epochs
 OUR_WINDOWS = tuple(round(one) for one in rail.WINDOWS)
@@ -59,7 +59,7 @@ def contenders(of: Case, healthy: Float[np.ndarray, "N E S"], factor: float) -> 
 
     def averaged(w: float) -> Contender:
         window_s = w - how.period_s / 2
-        statistic = AveragedFreed(jnp.asarray(window_s), usual, enough(w, how.period_s))
+        statistic = AveragedBaardaW(jnp.asarray(window_s), usual, enough(w, how.period_s))
         return Contender(f"aime-{w:.0f}", printed(innovation_tests.averaged(how, usual, window_s)), free(statistic))
 
     def outliers(name: str, innovations: Float[np.ndarray, "N E C"], share: float, raw: bool) -> Contender:
@@ -72,7 +72,7 @@ def contenders(of: Case, healthy: Float[np.ndarray, "N E S"], factor: float) -> 
     return (
         Contender(NONE, None, None),
         Contender(CHI_SQUARE, printed(innovation_tests.whole(how)), free(Standardised(Mahalanobis()), tests=1)),
-        Contender("w-test", printed(innovation_tests.one_by_one(how, usual)), free(Freed())),
+        Contender("w-test", printed(innovation_tests.one_by_one(how, usual)), free(BaardaW())),
         *(averaged(w) for w in AIME_S),
         outliers(LOF, plain.normalised, lof_efd.FALSE_ALARMS, False),
         replace(outliers(f"{LOF}-1e-3", plain.normalised, 1e-3, False), free=None),

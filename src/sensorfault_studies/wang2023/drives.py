@@ -78,18 +78,18 @@ def judged(condition: Condition, numbers: Numbers, effort: Effort) -> None:
         for one in contenders(of, learned, condition.factor)
         if one.name in condition.methods or not condition.methods
     ]
-    told = flown(unwatched(of, condition.factor), of, free)
-    settled = told.normalised[:, SETTLED:, : len(of.framing.satellites)]
-    for run, off in zip(settled, told.off_m[:, SETTLED:], strict=True):
+    result = flown(unwatched(of, condition.factor), of, free)
+    settled = result.normalised[:, SETTLED:, : len(of.framing.satellites)]
+    for run, off in zip(settled, result.off_m[:, SETTLED:], strict=True):
         rmse = float(np.sqrt(np.mean(off**2)))
         numbers.add(condition.words, NONE, {"innovation_sd": float(np.nanstd(run)), "healthy_hrmse_m": rmse})
     lies = condition.lies[1:3] if effort.quick else condition.lies
     for k, one in enumerate(every):
         effort.tell(f"{condition.words}: {one.name}", k / len(every))
         for words, monitor in _variants(one, of, calibration, condition, numbers):
-            told = flown(monitor, of, free)
+            result = flown(monitor, of, free)
             if one.name != NONE:
-                numbers.add(words, one.name, {"far": false_alarms(told)})
+                numbers.add(words, one.name, {"far": false_alarms(result)})
             for lie in lies:
                 for row in outcome(flown(monitor, of, trials(errors, lie)), len(errors)):
                     kept = row if one.name != NONE else {"hrmse_m": row["hrmse_m"]}
@@ -105,7 +105,7 @@ def _variants(
     if one.free is not None:
         words = f"{condition.words} {EQUAL}"
         monitor, limit, reached = matched(one.free, of, calibration, RATE)
-        told = {"limit": limit.limit, "limit_low": limit.low, "limit_high": limit.high, "far_calibrated": reached}
-        numbers.add(words, one.name, told)
+        result = {"limit": limit.limit, "limit_low": limit.low, "limit_high": limit.high, "far_calibrated": reached}
+        numbers.add(words, one.name, result)
         found.append((words, monitor))
     return found

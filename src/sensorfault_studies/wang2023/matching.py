@@ -29,8 +29,8 @@ def matched(
 
     The interval is that of the open loop about its own limit, by whole runs, moved to the limit of the closed loop.
     """
-    deaf = flown(limited(monitor, np.inf), of, healthy)
-    open_loop = calibrated(list(deaf.score[:, SETTLED:]), rate, 0)
+    uncalibrated = flown(limited(monitor, np.inf), of, healthy)
+    open_loop = calibrated(list(uncalibrated.score[:, SETTLED:]), rate, 0)
     tried: list[tuple[float, float]] = []  # logarithms of limit and rate
     limit = open_loop.limit
     for _ in range(ROUNDS):

@@ -50,8 +50,8 @@ def _run(monitor: Monitor, rows: Sample) -> tuple[Array, ...]:
         residual, at = report.residual, after.residual.nav.position
         sigma = jnp.sqrt(jnp.diagonal(residual.cov))
         flagged = report.verdict.sensor == FAULT
-        told = at, residual.value, sigma, residual.valid, report.trust.measured, flagged, _largest(report.scores[0])
-        return after, told
+        result = at, residual.value, sigma, residual.valid, report.trust.measured, flagged, _largest(report.scores[0])
+        return after, result
 
     done: tuple[Array, ...] = lax.scan(one, monitor.init(), rows)[1]
     return done

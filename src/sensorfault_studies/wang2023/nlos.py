@@ -16,7 +16,7 @@ from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.ins_gnss import InsGnss
 from sensorfault.stages.statistic.normalised import Normalised
-from sensorfault.stages.statistic.one_sided import Late
+from sensorfault.stages.statistic.one_sided import OneSided
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.vehicles.train import CarrierNoise, ElevationNoise, Grade
 from sensorfault_studies.findings import Effort, Findings
@@ -101,7 +101,7 @@ def through(of: Town, way: Way, wheels: bool) -> Navigated:
         tuple(int(name[0] != "G") for name in of.names),
         parts=1,
     )
-    branch = Branch(Late() if way.late else Normalised(), Fixed(jnp.full(many, way.limit)))
+    branch = Branch(OneSided() if way.late else Normalised(), Fixed(jnp.full(many, way.limit)))
     monitor = Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(many), tuple(range(many)), most=MOST)
     return navigated(monitor, framing(log, of.names, False, "wheel.speed" if wheels else "").frame(log))
 

@@ -79,10 +79,10 @@ def _best(numbers: Numbers) -> str:
 
 def of_rides(numbers: Numbers) -> tuple[str, ...]:
     """What a user would see."""
-    told = ", ".join(
+    result = ", ".join(
         f"{method} {numbers.mean(WORDS, method, 'false_alarms_per_hour'):.0f}" for method in (CHI_SQUARE, LOF, OURS)
     )
     return (
-        f"False alarms an hour on simulated rides of a train, with the limits that each recipe sets itself: {told}. "
+        f"False alarms an hour on simulated rides of a train, with the limits that each recipe sets itself: {result}. "
         "train promises one; ten minutes a ride cannot show it.",
     )

@@ -15,7 +15,7 @@ from sensorfault_studies.wang2023.contenders import CHI_SQUARE, LOF, OURS
 METHODS = (CHI_SQUARE, LOF, OURS)
 TAUGHT, FIRST, RIDES = 500, 510, 3  # seeds
 LONG_S, ONSET_S, LASTS_S = 600.0, 300.0, 80.0
-FAULTS = (("bias", 15.0), ("bias", 30.0), ("drift", 0.5), ("drift", 2.0))
+FAULTS = (("offset", 15.0), ("offset", 30.0), ("drift", 0.5), ("drift", 2.0))
 WORDS = "tunnels, as fitted"
 
 
@@ -32,9 +32,9 @@ def rides(numbers: Numbers, effort: Effort) -> None:
             satellite = _steady(log)
             for kind, size in FAULTS:
                 done = inject(log, [Fault(kind, satellite, RANGE, ONSET_S, LASTS_S, size)], seed)
-                (told,) = judge(detect(model, done.log), done.truth).outcomes
-                found = {"found": float(told.found), "innocents": float(told.innocents)}
-                numbers.add(WORDS, method, found | ({"delay_s": told.delay_s} if told.found else {}), kind, size)
+                (result,) = judge(detect(model, done.log), done.truth).outcomes
+                found = {"found": float(result.found), "innocents": float(result.false_isolations)}
+                numbers.add(WORDS, method, found | ({"delay_s": result.delay_s} if result.found else {}), kind, size)
 
 
 def _steady(log: Log) -> str:

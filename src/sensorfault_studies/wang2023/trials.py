@@ -44,21 +44,21 @@ def _who(runs: int, satellites: int) -> Sequence[tuple[int, int]]:
     return [(onset, satellite) for _ in range(runs) for onset in ONSETS for satellite in range(satellites)]
 
 
-def outcome(told: Flown, runs: int) -> list[dict[str, float]]:
+def outcome(result: Flown, runs: int) -> list[dict[str, float]]:
     """Of each run of errors, over satellites and onsets.
 
     `detection_rate`: share of the fault's epochs in which the satellite is flagged, `delay_s`: until that is first so,
     at most the fault's length. `wrong_exclusions`: share of the epochs in which another one is flagged. `hrmse_m`: of
     the horizontal position in the fault.
     """
-    who = _who(runs, told.flagged.shape[2])
+    who = _who(runs, result.flagged.shape[2])
     rows = []
     for m, (onset, satellite) in enumerate(who):
-        flagged = told.flagged[m, onset : onset + LASTS]
+        flagged = result.flagged[m, onset : onset + LASTS]
         mine = flagged[:, satellite]
         others = np.delete(flagged, satellite, axis=1).any(axis=1)
         delay = float(np.argmax(mine)) if mine.any() else float(LASTS)
-        square = np.mean(np.minimum(told.off_m[m, onset : onset + LASTS], LOST_M) ** 2)
+        square = np.mean(np.minimum(result.off_m[m, onset : onset + LASTS], LOST_M) ** 2)
         rows.append((mine.mean(), delay, others.mean(), square))
     each = np.array(rows, float).reshape(runs, -1, 4).mean(axis=1)
     return [

@@ -22,7 +22,7 @@ from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.ins_gnss import InsGnss
-from sensorfault.stages.statistic.baarda_w import Freed
+from sensorfault.stages.statistic.baarda_w import BaardaW
 from sensorfault.stages.statistic.normalised import Normalised
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.vehicles.train import ElevationNoise, Grade
@@ -35,7 +35,12 @@ FOLDER, FILE = "gnss/f9p_walk0827", "gnss_1730.ubx"
 SYSTEMS = "GE"
 BEGUN_S, LEARNED_S = 5.0, 60.0  # the limit is of what is between, healthy; faults come later
 ONSETS_S, LASTS_S = (65.0, 75.0, 85.0), 40.0
-FAULTS = (("bias", 5.0), ("bias", 10.0), ("bias", 15.0), ("drift", 0.25), ("drift", 0.5), ("drift", 1.0))  # [m], [m/s]
+FAULTS = (
+    ("offset", 5.0),
+    ("offset", 10.0),
+    ("offset", 15.0),
+    *(("drift", rate) for rate in (0.25, 0.5, 1.0)),
+)  # [m], [m/s]
 STEADY = 0.95  # share of the epochs in which a satellite was there
 FALSE_ALARMS = 1e-2
 MOST = 3
@@ -98,10 +103,10 @@ def injected(effort: Effort) -> Findings:
         for i, (fault, satellite) in enumerate(cases):
             hit = (of.epochs.time >= fault.start_s) & (of.epochs.time < fault.end_s)
             off = horizontal(lying.position[i, hit], healthy.position[hit])
-            told = {"hrmse_m": float(np.sqrt(np.mean(off**2)))}
+            result = {"hrmse_m": float(np.sqrt(np.mean(off**2)))}
             if method != NONE:
-                told |= _found(refused[i, hit], satellite, of.epochs.time[hit] - fault.start_s)
-            numbers.add(CONDITION, method, told, fault.kind, fault.magnitude)
+                result |= _found(refused[i, hit], satellite, of.epochs.time[hit] - fault.start_s)
+            numbers.add(CONDITION, method, result, fault.kind, fault.magnitude)
     return Findings(tuple(numbers.rows()), (), (_remark(numbers),))
 
 
@@ -111,7 +116,7 @@ def watching(of: Walk, method: str, limit: float) -> Monitor:
     system = tuple(int(name[0] != "G") for name in of.names)
     wheel = jnp.asarray(0.1)  # there are none
     residual = InsGnss(GRADE, NOISE, wheel, wheel, wheel, system, bank=method == "leave-one-out", parts=1)
-    statistic = Freed() if method == "w-test" else Normalised()
+    statistic = BaardaW() if method == "w-test" else Normalised()
     branch = Branch(statistic, Fixed(jnp.full(slots, limit)))
     return Monitor(residual, (branch,), Exceed(), Drop(), jnp.zeros(slots), tuple(range(slots)), most=MOST)
 

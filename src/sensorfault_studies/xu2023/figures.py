@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 
 from sensorfault_studies.findings import Figure, Json
 from sensorfault_studies.xu2023.contenders import TOGETHER
-from sensorfault_studies.xu2023.missions import Told
+from sensorfault_studies.xu2023.missions import Result
 from sensorfault_studies.xu2023.run import Flown
 from sensorfault_studies.xu2023.scenario import TRAINED_S, WRONG_M, Scenario
 
@@ -17,27 +17,27 @@ METRICS = ("accuracy", "precision", "recall", "fpr", "fnr")
 SHARES = np.linspace(0.5, 99.5, 100)
 
 
-def of_missions(told: Told) -> tuple[Figure, ...]:
+def of_missions(result: Result) -> tuple[Figure, ...]:
     """Of one condition."""
-    key = f"e_{told.condition.data}_{told.condition.words.lower().replace('.', '')}"
-    where = f"{told.condition.data}, {told.condition.words}"
+    key = f"e_{result.condition.data}_{result.condition.words.lower().replace('.', '')}"
+    where = f"{result.condition.data}, {result.condition.words}"
     return (
-        *(_flags(f"{key}_flags{j + 1}", f"{where}: ranges to leader {j + 1}", told, j) for j in range(2)),
-        _bars(f"{key}_scores", f"{where}: how well anomalies are told", told),
-        _way(f"{key}_position", f"{where}: error of the position", told),
-        _shares(f"{key}_cdf", f"{where}: error of the position, its distribution", told),
+        *(_flags(f"{key}_flags{j + 1}", f"{where}: ranges to leader {j + 1}", result, j) for j in range(2)),
+        _bars(f"{key}_scores", f"{where}: how well anomalies are told", result),
+        _way(f"{key}_position", f"{where}: error of the position", result),
+        _shares(f"{key}_cdf", f"{where}: error of the position, its distribution", result),
     )
 
 
-def _flags(name: str, title: str, told: Told, j: int) -> Figure:
+def _flags(name: str, title: str, result: Result, j: int) -> Figure:
     """The paper's figures 13 to 15."""
-    case = told.case
+    case = result.case
     came = ~np.isnan(case.error[:, j]) & case.judged
     error = np.abs(case.error[came, j])
     data: list[Json] = [
         {"type": "scatter", "mode": "lines", "name": "error [m]", "x": _short(case.log.time[came]), "y": _short(error)}
     ]
-    data += [_marks(told.shown[method], case, came, j, method, i) for i, method in enumerate(SHOWN)]
+    data += [_marks(result.shown[method], case, came, j, method, i) for i, method in enumerate(SHOWN)]
     limit: Json = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": WRONG_M, "y1": WRONG_M}
     layout: Json = {
         "xaxis": {"title": {"text": "time [s]"}},
@@ -59,28 +59,28 @@ def _marks(run: Flown, case: Scenario, came: Bool[np.ndarray, " T"], j: int, met
     return {"type": "scatter", "mode": "markers", "name": method, "x": _short(at), "y": height, "marker": mark}
 
 
-def _bars(name: str, title: str, told: Told) -> Figure:
+def _bars(name: str, title: str, result: Result) -> Figure:
     """The paper's figure 16."""
     data: list[Json] = []
     for method in SHOWN:
         plain, _, words = method.partition(" ")
-        condition = f"{told.condition.words} {words}".strip() + " as-printed"
-        shares = [told.numbers.mean(condition, plain, metric) for metric in METRICS]
+        condition = f"{result.condition.words} {words}".strip() + " as-printed"
+        shares = [result.numbers.mean(condition, plain, metric) for metric in METRICS]
         data.append({"type": "bar", "name": method, "x": list(METRICS), "y": [round(share, 4) for share in shares]})
     caption = "The paper's figure 16; means over the missions, limits as each method sets them."
     layout: Json = {"barmode": "group", "yaxis": {"range": [0, 1]}}
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
 
-def _way(name: str, title: str, told: Told) -> Figure:
+def _way(name: str, title: str, result: Result) -> Figure:
     """The paper's figure 18."""
     data = [
         {
             "type": "scatter",
             "mode": "lines",
             "name": method,
-            "x": _short(told.case.log.time),
-            "y": _short(told.shown[method].off_m),
+            "x": _short(result.case.log.time),
+            "y": _short(result.shown[method].off_m),
         }
         for method in ("ungated-ackf", *SHOWN)
     ]
@@ -94,11 +94,11 @@ def _way(name: str, title: str, told: Told) -> Figure:
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
 
-def _shares(name: str, title: str, told: Told) -> Figure:
+def _shares(name: str, title: str, result: Result) -> Figure:
     """The paper's figure 19."""
     data = []
     for method in ("ungated-ackf", *SHOWN):
-        at = np.percentile(told.off_m[method], SHARES)
+        at = np.percentile(result.off_m[method], SHARES)
         data.append({"type": "scatter", "mode": "lines", "name": method, "x": _short(at), "y": _short(SHARES / 100)})
     layout: Json = {
         "xaxis": {"title": {"text": "error of the position [m]"}, "type": "log"},

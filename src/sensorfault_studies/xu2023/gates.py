@@ -86,8 +86,8 @@ def compared(numbers: Numbers, words: str, all_of: Sequence[Watched], times: Map
         tables = [table(run.flagged, one.case) for run, one in zip(runs, all_of, strict=True)]
         off_m = [run.off_m[one.case.judged] for run, one in zip(runs, all_of, strict=True)]
         for one, run, four, off in zip(all_of, runs, tables, off_m, strict=True):
-            told = scores(four, off, gated) | {"innovation_sd": innovation_sd(run, one.case)}
-            numbers.add(f"{one.name} {words}", method, told)
+            result = scores(four, off, gated) | {"innovation_sd": innovation_sd(run, one.case)}
+            numbers.add(f"{one.name} {words}", method, result)
         numbers.add(f"{ALL} {words}", method, scores(np.sum(tables, axis=0), np.concatenate(off_m), gated))
         for kind in {fault.kind: 0 for one in all_of for fault in one.case.faults} if gated else ():
             lied = [run.flagged[_lied(one.case, kind)] for run, one in zip(runs, all_of, strict=True)]

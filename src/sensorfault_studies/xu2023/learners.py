@@ -53,12 +53,12 @@ def judged(wrong_m: float, over: Float[np.ndarray, " M"], size: Float[np.ndarray
 
     `over`: beyond the limit if above 0; `size` of the true errors [m].
     """
-    wrong, told = size > wrong_m, over > 0
+    wrong, result = size > wrong_m, over > 0
     some, others = max(int(wrong.sum()), 1), max(int((~wrong).sum()), 1)
     return {
-        "accuracy": float((told == wrong).mean()),
-        "recall": float((told & wrong).sum() / some) if wrong.any() else float("nan"),
-        "fpr": float((told & ~wrong).sum() / others) if (~wrong).any() else float("nan"),
+        "accuracy": float((result == wrong).mean()),
+        "recall": float((result & wrong).sum() / some) if wrong.any() else float("nan"),
+        "fpr": float((result & ~wrong).sum() / others) if (~wrong).any() else float("nan"),
         "auc": auc(over, wrong),
     }
 
@@ -68,10 +68,10 @@ def compared(numbers: Numbers, condition: str, learn: Labelled, test: Labelled, 
     for (method, variant), fit in learners(wrong_m).items():
         answer = fit(learn)
         over = answer(test.features)
-        told = judged(wrong_m, over, test.target)
+        result = judged(wrong_m, over, test.target)
         if method == ANFIS:
-            told["rms"] = float(np.sqrt(np.mean((over + wrong_m - test.target) ** 2)))
-        numbers.add(f"{condition} {variant}".strip(), method, told)
+            result["rms"] = float(np.sqrt(np.mean((over + wrong_m - test.target) ** 2)))
+        numbers.add(f"{condition} {variant}".strip(), method, result)
 
 
 def curves(
@@ -85,6 +85,6 @@ def curves(
 ) -> None:
     """Learning curves; the number of rows is the condition's last word, and what they are drawn from stays the same."""
     for (method, variant), fit in learners(wrong_m, CURVES).items():
-        for size, told in learning_curve(fit, partial(judged, wrong_m), learn, test, sizes, draws):
+        for size, result in learning_curve(fit, partial(judged, wrong_m), learn, test, sizes, draws):
             words = [condition, variant, f"n{size}"]
-            numbers.add(" ".join(word for word in words if word), method, told)
+            numbers.add(" ".join(word for word in words if word), method, result)

@@ -41,8 +41,8 @@ def memberships(name: str, title: str, before: Anfis, after: Anfis) -> Figure:
 
 def surface(name: str, title: str, model: Anfis, seen: Labelled) -> Figure:
     """The paper's figure 12: the error foretold over two scaled features, the third at its median of the training."""
-    told = jax.tree.map(np.asarray, model)
-    unit = told.unit
+    result = jax.tree.map(np.asarray, model)
+    unit = result.unit
     rows, side = np.asarray(unit(seen.features)), np.linspace(0, 1, FINE)
     highest = 1.2 * float(seen.target.max())
     data: list[Json] = []
@@ -52,7 +52,7 @@ def surface(name: str, title: str, model: Anfis, seen: Labelled) -> Figure:
         x = np.tile(np.median(rows, axis=0), (FINE, FINE, 1))
         x[..., i], x[..., j] = side[None], side[:, None]
         size = x * unit.span + unit.low
-        z = told(np.exp(size) if unit.log else size)
+        z = result(np.exp(size) if unit.log else size)
         data.append(
             {"type": "surface", "scene": scene, "x": _short(side), "y": _short(side), "showscale": False}
             | {"z": np.clip(z, 0, highest).round(2).tolist(), "colorscale": "Viridis", "opacity": 0.85}

@@ -45,7 +45,7 @@ CONDITIONS = (
 
 
 @dataclass(frozen=True)
-class Told:
+class Result:
     """The numbers of one condition; `shown`: the first mission, and each method's run of it, printed limits."""
 
     condition: Condition
@@ -56,13 +56,13 @@ class Told:
     accuracy: dict[str, Float[np.ndarray, " S"]]
 
 
-def judged(condition: Condition, effort: Effort) -> Told:
+def judged(condition: Condition, effort: Effort) -> Result:
     """All methods, as they come and with limits eased or tightened to one rate of false alarms."""
     many = FEW if effort.quick else max(MISSIONS, effort.seeds)
     pool = [condition.make(POOL + k) for k in range(POOLED)]
     cases = [condition.make(FIRST + k) for k in range(many)]
     frozen = [] if condition.data != "simulated" else [_both_frozen(FIRST + k) for k in range(many)]
-    told = Numbers(EXPERIMENT, condition.data, condition.source)
+    result = Numbers(EXPERIMENT, condition.data, condition.source)
     shown: dict[str, Flown] = {}
     off_m: dict[str, Float[np.ndarray, " N"]] = {}
     accuracy: dict[str, Float[np.ndarray, " S"]] = {}
@@ -75,7 +75,7 @@ def judged(condition: Condition, effort: Effort) -> Told:
         tables = np.array([table(run.flagged, case) for run, case in zip(flown, cases, strict=True)])
         gated = one.name != "ungated-ackf"
         for run, case, four in zip(flown, cases, tables, strict=True):
-            told.add(f"{words} as-printed", one.name, scores(four, run.off_m[case.judged], gated))
+            result.add(f"{words} as-printed", one.name, scores(four, run.off_m[case.judged], gated))
         shown[name] = flown[0]
         off_m[name] = np.concatenate([run.off_m[case.judged] for run, case in zip(flown, cases, strict=True)])
         accuracy[name] = tables[:, :2].sum(axis=1) / tables.sum(axis=1)
@@ -83,19 +83,19 @@ def judged(condition: Condition, effort: Effort) -> Told:
             continue
         for case in frozen if condition.words == "Q0.2" else []:
             run = through(one.make(case), case)
-            told.add(f"{words} both-frozen", one.name, {"lockout_s": lockout_s(run.flagged, case, sum(FROZEN_S))})
+            result.add(f"{words} both-frozen", one.name, {"lockout_s": lockout_s(run.flagged, case, sum(FROZEN_S))})
         times = _matched(one, pool)
         if np.isfinite(times):
             for case in cases:
                 run = through(eased(one.make(case), times), case)
-                told.add(f"{words} fpr2e-2", one.name, scores(table(run.flagged, case), run.off_m[case.judged]))
+                result.add(f"{words} fpr2e-2", one.name, scores(table(run.flagged, case), run.off_m[case.judged]))
     for name, values in accuracy.items():
         method, _, variant = name.partition(" ")
         for rival in (AGAINST, RIVAL):
             words = f"{condition.words} {variant}".strip() + f" against {rival}"
             for win in values > accuracy[rival]:
-                told.add(words, method, {"paired_wins": float(win)})
-    return Told(condition, told, cases[0], shown, off_m, accuracy)
+                result.add(words, method, {"paired_wins": float(win)})
+    return Result(condition, result, cases[0], shown, off_m, accuracy)
 
 
 def _matched(one: Contender, pool: Sequence[Scenario]) -> float:
@@ -112,5 +112,5 @@ def _matched(one: Contender, pool: Sequence[Scenario]) -> float:
 def _both_frozen(seed: int) -> Scenario:
     """A mission on which nothing is wrong but that both leaders freeze for long."""
     mission = sail(1700.0, seed, replace(RANGING))
-    done = inject(mission.log, [Fault("jam", f"leader{j}", "range", *FROZEN_S) for j in (1, 2)], seed)
+    done = inject(mission.log, [Fault("frozen", f"leader{j}", "range", *FROZEN_S) for j in (1, 2)], seed)
     return Scenario(done.log, error(done.log, mission.truth), mission.truth.value[:, :2], done.truth)

@@ -40,21 +40,21 @@ def dive() -> Dive:
         LogError: it is not there.
     """
     (file,) = real("underwater/ugps_g2_acoustic").glob("*_acoustic.csv")
-    told = pl.read_csv(file, infer_schema_length=None)
-    raw = _four(told, "distance")
+    result = pl.read_csv(file, infer_schema_length=None)
+    raw = _four(result, "distance")
     new = np.append(False, (np.diff(raw, axis=0) != 0).any(axis=1)) & (raw >= 0).any(axis=1)
-    time = told["timestamp"].to_numpy()[new]
+    time = result["timestamp"].to_numpy()[new]
     return Dive(
         time=time - time[0],
         range=np.where(raw >= 0, raw, np.nan)[new],
-        position=told.select("x", "y", "z").to_numpy()[new],
-        solved=told["position_valid"].to_numpy()[new],
-        signal=(_four(told, "rssi") - _four(told, "nsd"))[new],
+        position=result.select("x", "y", "z").to_numpy()[new],
+        solved=result["position_valid"].to_numpy()[new],
+        signal=(_four(result, "rssi") - _four(result, "nsd"))[new],
     )
 
 
-def _four(told: pl.DataFrame, what: str) -> Float[np.ndarray, "T 4"]:
-    return told.select(f"{what}_r{i}" for i in range(4)).to_numpy().astype(float)
+def _four(result: pl.DataFrame, what: str) -> Float[np.ndarray, "T 4"]:
+    return result.select(f"{what}_r{i}" for i in range(4)).to_numpy().astype(float)
 
 
 def placed(of: Dive) -> Float[np.ndarray, "4 3"]:

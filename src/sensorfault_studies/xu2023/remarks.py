@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sensorfault_studies.xu2023.contenders import AGAINST, ALONE, RIVAL, TOGETHER
-from sensorfault_studies.xu2023.missions import MATCHED, POOLED, Told
+from sensorfault_studies.xu2023.missions import MATCHED, POOLED, Result
 from sensorfault_studies.xu2023.scenario import ANOMALIES, WRONG_M
 
 PAPER = {  # table 2: TP, TN, FP, FN
@@ -15,9 +15,9 @@ PAPER = {  # table 2: TP, TN, FP, FN
 }
 
 
-def remarks(told: Sequence[Told]) -> tuple[str, ...]:
+def remarks(result: Sequence[Result]) -> tuple[str, ...]:
     """All of them."""
-    return (_reading(), *(_summary(one) for one in told), *_margin(told), *_lockouts(told))
+    return (_reading(), *(_summary(one) for one in result), *_margin(result), *_lockouts(result))
 
 
 def _reading() -> str:
@@ -35,15 +35,15 @@ def _reading() -> str:
     )
 
 
-def _summary(one: Told) -> str:
+def _summary(one: Result) -> str:
     ranked = sorted(one.accuracy, key=lambda name: -float(np.mean(one.accuracy[name])))
     said = ", ".join(f"{name} {np.mean(one.accuracy[name]):.3f}" for name in ranked if name != "ungated-ackf")
     return f"E, {one.condition.data}, {one.condition.words}: mean accuracy, best first: {said}."
 
 
-def _margin(told: Sequence[Told]) -> Iterator[str]:
+def _margin(result: Sequence[Result]) -> Iterator[str]:
     """The paper's margin, and where most of the gain comes from."""
-    for one in told[:1]:
+    for one in result[:1]:
         words = one.condition.words
         printed = [one.numbers.mean(f"{words} as-printed", AGAINST, metric) for metric in ("fpr", "fnr")]
         anfis = [one.numbers.mean(f"{words} {ALONE} as-printed", "anfis-cubature", m) for m in ("fpr", "fnr")]
@@ -56,8 +56,8 @@ def _margin(told: Sequence[Told]) -> Iterator[str]:
         )
 
 
-def _lockouts(told: Sequence[Told]) -> Iterator[str]:
-    for one in told:
+def _lockouts(result: Sequence[Result]) -> Iterator[str]:
+    for one in result:
         found = {key.method: max(v) for key, v in one.numbers.values.items() if key.metric == "lockout_s"}
         if found:
             said = ", ".join(f"{method} {value:.0f} s" for method, value in found.items())

@@ -47,16 +47,16 @@ def run(robot: int) -> Run:
 
     Begins at the true pose and the first odometry. An error is what a range says beyond the true distance.
     """
-    odometry, truth, heard = (_table(f"Robot{robot}_{what}") for what in ("Odometry", "Groundtruth", "Measurement"))
+    odometry, truth, received = (_table(f"Robot{robot}_{what}") for what in ("Odometry", "Groundtruth", "Measurement"))
     zero, last = max(odometry[0, 0], truth[0, 0]), min(odometry[-1, 0], truth[-1, 0])
     subject = {int(code): int(who) for who, code in _table("Barcodes")}
-    which = np.array([subject.get(int(code), 0) - FIRST_LANDMARK for code in heard[:, 1]])
-    mine = (which >= 0) & (heard[:, 0] > zero) & (heard[:, 0] < last)
-    heard, which = heard[mine], which[mine]
-    time = np.unique(np.concatenate([np.arange(0.0, last - zero, SLOWEST_S), heard[:, 0] - zero]))
+    which = np.array([subject.get(int(code), 0) - FIRST_LANDMARK for code in received[:, 1]])
+    mine = (which >= 0) & (received[:, 0] > zero) & (received[:, 0] < last)
+    received, which = received[mine], which[mine]
+    time = np.unique(np.concatenate([np.arange(0.0, last - zero, SLOWEST_S), received[:, 0] - zero]))
     at, near = _true(truth, time + zero), landmarks()
     ranges = np.full((len(time), len(near)), np.nan)
-    ranges[np.searchsorted(time, heard[:, 0] - zero), which] = heard[:, 2]
+    ranges[np.searchsorted(time, received[:, 0] - zero), which] = received[:, 2]
     errors = ranges - np.linalg.norm(at[:, None] - near, axis=2)
     early = time < LEARNED * time[-1]
     sigma_m = robust_sd(errors[early][np.isfinite(errors[early])])

@@ -63,10 +63,10 @@ def struck(one: Watched, seed: int) -> Watched:
     faults = []
     for k, start in enumerate(np.arange(case.since_s, log.time[-1] - LASTS_S, LASTS_S + APART_S)):
         meanwhile = (log.time >= start) & (log.time < start + LASTS_S)
-        heard = np.flatnonzero((~np.isnan(case.error[meanwhile])).sum(axis=0) >= FEWEST)
-        if len(heard):
-            kind, size = (("jam", 0.0), ("drift", DRIFT * float(rng.choice((-1, 1)))))[k % 2]
-            faults.append(Fault(kind, names[int(rng.choice(heard))], "range", float(start), LASTS_S, size))
+        received = np.flatnonzero((~np.isnan(case.error[meanwhile])).sum(axis=0) >= FEWEST)
+        if len(received):
+            kind, size = (("frozen", 0.0), ("drift", DRIFT * float(rng.choice((-1, 1)))))[k % 2]
+            faults.append(Fault(kind, names[int(rng.choice(received))], "range", float(start), LASTS_S, size))
     done = inject(log, faults, seed)
     ranges = [i for i, channel in enumerate(log.channels) if channel.name == "range"]
     error = case.error + done.log.value[:, ranges] - log.value[:, ranges]

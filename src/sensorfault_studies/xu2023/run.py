@@ -29,8 +29,8 @@ def _through(monitor: Monitor, rows: Sample) -> tuple[Array, Any, Array]:
         state, report = monitor.step(state, sample)
         return state, (report.verdict.channel, report.residual, state.residual.mean)
 
-    told: tuple[Array, Any, Array] = lax.scan(one, monitor.init(), rows)[1]
-    return told
+    result: tuple[Array, Any, Array] = lax.scan(one, monitor.init(), rows)[1]
+    return result
 
 
 @jax.jit
@@ -54,8 +54,10 @@ def through(monitor: Monitor, case: Scenario, least: int = 0) -> Flown:
 def table(flagged: Bool[np.ndarray, "T L"], case: Scenario) -> Float[np.ndarray, "4"]:
     """TP, TN, FP, FN of the judged ranges. Xu et al. 2023, section 4.2."""
     there = ~np.isnan(case.error) & case.judged[:, None]
-    told, wrong = flagged[there], case.wrong[there]
-    return np.array([np.sum(told & wrong), np.sum(~told & ~wrong), np.sum(told & ~wrong), np.sum(~told & wrong)], float)
+    result, wrong = flagged[there], case.wrong[there]
+    return np.array(
+        [np.sum(result & wrong), np.sum(~result & ~wrong), np.sum(result & ~wrong), np.sum(~result & wrong)], float
+    )
 
 
 def scores(four: Float[np.ndarray, "4"], off_m: Float[np.ndarray, " n"], gated: bool = True) -> dict[str, float]:

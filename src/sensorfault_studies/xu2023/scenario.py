@@ -15,8 +15,8 @@ DURATION_S, TRAINED_S = 1700.0, 600.0
 WRONG_M = 9.0  # T1: a range further off than this is anomalous
 ANOMALIES = (51, 6)  # of each leader, in the judged part
 PRINTED = (
-    Fault("jam", "leader1", "range", 100.0, 50.0),
-    Fault("jam", "leader2", "range", 400.0, 50.0),
+    Fault("frozen", "leader1", "range", 100.0, 50.0),
+    Fault("frozen", "leader2", "range", 400.0, 50.0),
     Fault("drift", "leader1", "range", 1100.0, 70.0, 0.5),
 )
 LONGEST_S = 60.0  # of the freezes that make up the number
@@ -76,8 +76,8 @@ def struck(mission: Mission, seed: int, wrong_m: float = WRONG_M) -> Scenario:
 def error(log: Log, truth: Log) -> Float[np.ndarray, "T L"]:
     """How far off each range is [m], NaN where none arrived."""
     columns = [i for i, channel in enumerate(log.channels) if channel.name == "range"]
-    told = np.where(log.fresh[:, columns], log.value[:, columns], np.nan)
-    return np.asarray(told - truth.value[:, columns])
+    result = np.where(log.fresh[:, columns], log.value[:, columns], np.nan)
+    return np.asarray(result - truth.value[:, columns])
 
 
 def _count(mission: Mission, faults: list[Fault], j: int, wrong_m: float) -> int:
@@ -96,7 +96,7 @@ def _freeze(
     """A freeze that makes wrong ranges, and no more than are missing; none if there is no such."""
     before = _count(mission, faults, j, wrong_m)
     for length in np.arange(when[1], 10.0, -2.5):
-        frozen = Fault("jam", f"leader{j + 1}", "range", when[0], float(length))
+        frozen = Fault("frozen", f"leader{j + 1}", "range", when[0], float(length))
         more = _count(mission, [*faults, frozen], j, wrong_m) - before
         if more <= missing:
             return [frozen] if more > 0 else []

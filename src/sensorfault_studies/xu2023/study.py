@@ -7,7 +7,7 @@ from sensorfault_studies.data import real
 from sensorfault_studies.findings import Effort, Findings, Row
 from sensorfault_studies.xu2023 import ranging, rules
 from sensorfault_studies.xu2023.figures import of_missions
-from sensorfault_studies.xu2023.missions import CONDITIONS, Told, judged
+from sensorfault_studies.xu2023.missions import CONDITIONS, Result, judged
 from sensorfault_studies.xu2023.remarks import PAPER, remarks
 
 FOLDERS = ("underwater/snapir_auv", "underwater/ugps_g2_acoustic", "ranging/uwb_outdoor", "ranging/mrclam")
@@ -22,13 +22,13 @@ def study(effort: Effort) -> Findings:
     """
     for folder in FOLDERS:
         real(folder)
-    told = []
+    result = []
     for k, condition in enumerate(CONDITIONS):
         share = JUDGED / len(CONDITIONS)
-        told.append(judged(condition, _part(effort, k * share, share)))
-    rows = tuple(row for one in told for row in rows_of(one))
-    figures = tuple(figure for one in told for figure in of_missions(one))
-    missions = Findings(rows, figures, remarks(told))
+        result.append(judged(condition, _part(effort, k * share, share)))
+    rows = tuple(row for one in result for row in rows_of(one))
+    figures = tuple(figure for one in result for figure in of_missions(one))
+    missions = Findings(rows, figures, remarks(result))
     learned = rules.findings(_part(effort, JUDGED, LEARNED))
     return missions + learned + ranging.findings(_part(effort, JUDGED + LEARNED, 1 - JUDGED - LEARNED))
 
@@ -37,12 +37,12 @@ def _part(effort: Effort, begin: float, share: float) -> Effort:
     return replace(effort, tell=lambda doing, done: effort.tell(doing, begin + share * done))
 
 
-def rows_of(told: Told) -> Iterator[Row]:
+def rows_of(result: Result) -> Iterator[Row]:
     """With the paper's numbers beside its own methods, as printed, on the simulated mission."""
-    for row in told.numbers.rows():
-        variant = row.condition.removeprefix(told.condition.words).removesuffix("as-printed").strip()
+    for row in result.numbers.rows():
+        variant = row.condition.removeprefix(result.condition.words).removesuffix("as-printed").strip()
         printed = PAPER.get(f"{row.method} {variant}".strip())
-        here = told.condition.data == "simulated" and told.condition.words != "fast"
+        here = result.condition.data == "simulated" and result.condition.words != "fast"
         if printed is None or not here or not row.condition.endswith("as-printed"):
             yield row
             continue

@@ -61,11 +61,11 @@ def _walk(folder: Path) -> Walk:
     first, last = track[0, 0], track[-1, 0]
     anchors = {}
     for file in sorted(folder.glob("A*.csv")):
-        told = pl.read_csv(file)
-        told = told.filter(pl.col("%time").cast(pl.Float64).is_between(first, last))
-        position = told.select("field.x", "field.y", "field.z").to_numpy()[0]
-        time = (told["%time"].to_numpy().astype(float) - first) / 1e9
-        anchors[file.stem] = Anchor(position, time, told["field.distanceFromTag"].to_numpy())
+        result = pl.read_csv(file)
+        result = result.filter(pl.col("%time").cast(pl.Float64).is_between(first, last))
+        position = result.select("field.x", "field.y", "field.z").to_numpy()[0]
+        time = (result["%time"].to_numpy().astype(float) - first) / 1e9
+        anchors[file.stem] = Anchor(position, time, result["field.distanceFromTag"].to_numpy())
     name = folder.parent.name[-1] + folder.name[-1]
     return Walk(name, np.column_stack([(track[:, 0] - first) / 1e9, track[:, 1:4]]), anchors)
 

@@ -65,11 +65,11 @@ class MemberFit(eqx.Module):
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
         value, variance = residual.extra
-        heard = residual.valid[None, :] & ~jnp.eye(value.shape[0], dtype=bool)
-        square = jnp.where(heard, value**2 / variance, 0.0)
+        received = residual.valid[None, :] & ~jnp.eye(value.shape[0], dtype=bool)
+        square = jnp.where(received, value**2 / variance, 0.0)
         total = square.sum(axis=1)
         blame = square / jnp.where(total > 0, total, 1.0)[:, None]
-        return Score(total, heard.any(axis=1), heard, blame), ()
+        return Score(total, received.any(axis=1), received, blame), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
         return ()

@@ -64,12 +64,12 @@ def _said(events: Sequence[Event], log: Log) -> Iterator[tuple[int, str, bytes]]
     zero = round((log.epoch_s or 0.0) * NS)
     first, last = (zero + round(float(log.time[i]) * NS) for i in (0, -1))
     yield first, STATES, _states(log, ())
-    told = moments(events, log)
-    for moment in told:
+    result = moments(events, log)
+    for moment in result:
         yield moment.time_ns, EVENTS, _text(moment)
         yield moment.time_ns, STATES, _states(log, moment.open)
-    if last > max((moment.time_ns for moment in told), default=first):
-        yield last, STATES, _states(log, told[-1].open if told else ())
+    if last > max((moment.time_ns for moment in result), default=first):
+        yield last, STATES, _states(log, result[-1].open if result else ())
 
 
 def _text(moment: Moment) -> bytes:

@@ -22,11 +22,11 @@ class Moment:
 def moments(events: Sequence[Event], log: Log) -> list[Moment]:
     """Every begin and end in order of time; at one time ends come first. An event that goes on has no end."""
     zero = log.epoch_s or 0.0
-    told = [(event.start_s, True, event) for event in events]
-    told += [(event.end_s, False, event) for event in events if event.end_s is not None]
+    result = [(event.start_s, True, event) for event in events]
+    result += [(event.end_s, False, event) for event in events if event.end_s is not None]
     last: list[Event] = []
     found = []
-    for time_s, begins, event in sorted(told, key=lambda one: (one[0], one[1] and one[2].end_s != one[0])):
+    for time_s, begins, event in sorted(result, key=lambda one: (one[0], one[1] and one[2].end_s != one[0])):
         last = [*last, event] if begins else [other for other in last if other is not event]
         found.append(Moment(round(zero * NS) + round(time_s * NS), event, begins, tuple(last)))
     return found
@@ -37,7 +37,7 @@ def door(event: Event) -> str:
     if event.subject == "motion":
         return "vehicle motion"
     if event.sensor is None:
-        return "the whole log" if event.kind == "miss" else "unknown which"
+        return "the whole log" if event.kind == "missing" else "unknown which"
     return f"{event.sensor}.{event.channel}" if event.channel else event.sensor
 
 

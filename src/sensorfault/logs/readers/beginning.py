@@ -5,7 +5,7 @@ from functools import reduce
 from pathlib import Path
 
 from sensorfault.logs.readers.formats import format_of, read_tables
-from sensorfault.logs.readers.source import Ask, Tables, joined, told
+from sensorfault.logs.readers.source import Ask, Tables, joined, with_notes
 
 LONG = 10**9  # bytes
 _PARTS = 8
@@ -37,7 +37,7 @@ def read_beginning(path: Path, tell: Callable[[float], None] = lambda share: Non
         parts.append(read_tables(path, Ask(tell=tell, part=take)))
         return reduce(joined, parts)
     except _Enough:
-        return told(reduce(joined, parts), [f"{path.name}: it is long, so only its beginning was looked at."])
+        return with_notes(reduce(joined, parts), [f"{path.name}: it is long, so only its beginning was looked at."])
 
 
 class _Enough(BaseException):

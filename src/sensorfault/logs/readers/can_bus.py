@@ -11,7 +11,7 @@ from sensorfault.logs.readers.can_rows import Rows
 from sensorfault.logs.readers.extra import extra
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.quiet import quiet
-from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, told
+from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, with_notes
 from sensorfault.logs.readers.subprocess_reader import reason
 from sensorfault.logs.readers.telling import TellingFile, open_telling
 from sensorfault.logs.table import LogError
@@ -37,7 +37,7 @@ def read_can(path: Path, ask: Ask) -> Tables:
     if not tables:
         named = ", ".join(file.name for file in beside)
         raise LogError(f"{path}: no message in it is one of {named}; put the database of this vehicle beside it.")
-    return told(tables, decoding.unknown_said(), (*damage, *decoding.damage()))
+    return with_notes(tables, decoding.unknown_said(), (*damage, *decoding.damage()))
 
 
 def _database(path: Path, beside: list[Path], cantools: Any) -> Any:

@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from sensorfault.logs.readers.covered import Covered
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.native import native
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, with_notes
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import known, spelled
 
@@ -63,7 +63,7 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no messages with a time in this DataFlash log; name a log of a whole flight.")
     notes = [f"{path.name}: messages described with contradictions left out: {', '.join(odd)}."] if odd else []
-    return told(tables, notes, [*covered.damage(), *(damage or _tail(path, covered.end))])
+    return with_notes(tables, notes, [*covered.damage(), *(damage or _tail(path, covered.end))])
 
 
 def _odd(piece: "Piece") -> list[str]:

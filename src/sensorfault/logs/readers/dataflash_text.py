@@ -8,7 +8,7 @@ import polars as pl
 
 from sensorfault.logs.readers.dataflash import CLOCKS, INSTANCE
 from sensorfault.logs.readers.handing import Handing
-from sensorfault.logs.readers.source import PART, Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import PART, Ask, Damage, Source, Tables, with_notes
 from sensorfault.logs.readers.telling import TellingFile
 from sensorfault.logs.table import LogError
 
@@ -41,7 +41,7 @@ def read_dataflash_text(path: Path, ask: Ask) -> Tables:
         named = "no messages with a time in this DataFlash log"
         what = named if messages.names else "this is no DataFlash log (no FMT line)"
         raise LogError(f"{path}: {what}; name a .log file of a whole flight.")
-    return told(tables, (), messages.damage())
+    return with_notes(tables, (), messages.damage())
 
 
 class _Messages:

@@ -4,7 +4,7 @@ from collections.abc import Hashable
 from pathlib import Path
 
 from sensorfault.logs.readers.ros_types import Decoder
-from sensorfault.logs.readers.source import Ask, Damage, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.readers.topics import Topics
 from sensorfault.logs.table import LogError
 
@@ -72,4 +72,4 @@ class Recording:
             else:
                 why = f"; {notes[0].rstrip('.')}" if notes else "; name one of a whole drive"
             raise LogError(f"{self.path}: no topic with numbers in this recording{why}.")
-        return told(tables, notes, damage)
+        return with_notes(tables, notes, damage)

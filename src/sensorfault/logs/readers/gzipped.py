@@ -7,7 +7,7 @@ from dataclasses import replace
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
 
-from sensorfault.logs.readers.source import Damage, Tables, told
+from sensorfault.logs.readers.source import Damage, Tables, with_notes
 from sensorfault.logs.table import LogError
 
 SUFFIX = ".gz"
@@ -55,7 +55,7 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
         except LogError as error:
             raise LogError(str(error).replace(str(file), str(path))) from None
     own = {name: replace(source, path=path) for name, source in tables.items()}
-    return told(own, (), damage)
+    return with_notes(own, (), damage)
 
 
 def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:

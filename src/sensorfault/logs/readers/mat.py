@@ -12,7 +12,7 @@ from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.extra import missing
 from sensorfault.logs.readers.mat_load import load
 from sensorfault.logs.readers.native import native
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
 from sensorfault.logs.readers.subprocess_reader import Loaded, load_apart, reason
 from sensorfault.logs.table import LogError
 
@@ -31,7 +31,7 @@ def read_mat(path: Path, ask: Ask) -> Tables:
     loaded = _loaded(path)
     damage = [
         Damage(f"a vector cannot be read ({why})", f"'{name}'", "the others were read")
-        for name, why in loaded.told.get("lost", ())
+        for name, why in loaded.result.get("lost", ())
     ]
     tables = {name or _OWN: _table(path, vectors) for name, vectors in loaded.vectors.items()}
     whole = {name: table for name, table in tables.items() if table is not None}
@@ -40,7 +40,7 @@ def read_mat(path: Path, ask: Ask) -> Tables:
         raise LogError(
             f"{path}: no vectors of numbers of one length{lost}; save a structure of them, with one for the time."
         )
-    return told(whole, (), damage)
+    return with_notes(whole, (), damage)
 
 
 def _loaded(path: Path) -> Loaded:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.logs.readers.quiet import quiet
-from sensorfault.logs.readers.source import Ask, Damage, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.readers.telling import TellingFile
 from sensorfault.logs.readers.topics import Topics
 from sensorfault.logs.table import LogError
@@ -33,7 +33,7 @@ def read_tlog(path: Path, ask: Ask) -> Tables:
     tables, notes = telemetry.topics.tables()
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no MAVLink packet in this file; name a .tlog file as a ground station wrote it.")
-    return told(tables, notes, telemetry.damage())
+    return with_notes(tables, notes, telemetry.damage())
 
 
 class _Telemetry:

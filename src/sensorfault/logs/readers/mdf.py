@@ -9,7 +9,7 @@ from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.extra import missing
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.mdf_load import TIME
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
 from sensorfault.logs.readers.subprocess_reader import Loaded, load_apart
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import known, spelled
@@ -30,8 +30,8 @@ def read_mdf(path: Path, ask: Ask) -> Tables:
         loaded = load_apart("mdf_load", path, 0 if handing.asked else None)
     except ValueError as error:
         raise LogError(f"{path}: not a whole MDF file ({error}); export it again.") from None
-    damage, others = _lost(loaded), loaded.told["others"]
-    parts = loaded.told["parts"] if handing.asked else 1
+    damage, others = _lost(loaded), loaded.result["others"]
+    parts = loaded.result["parts"] if handing.asked else 1
     for part in range(1, parts):
         handing.on(_tables(path, ask, loaded))
         ask.tell(part / parts)
@@ -42,18 +42,18 @@ def read_mdf(path: Path, ask: Ask) -> Tables:
             loaded = _NOTHING
             break
         damage += _lost(loaded)
-        others = max(others, loaded.told["others"])
+        others = max(others, loaded.result["others"])
     tables = handing.rest(_tables(path, ask, loaded))
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no channel group with a clock and numbers in this MDF file; export it again.")
     said = [f"{path.name}: {counted(others, 'channel')} of texts or arrays left out."] if others else []
-    return told(tables, said, dict.fromkeys(damage))
+    return with_notes(tables, said, dict.fromkeys(damage))
 
 
 def _lost(loaded: Loaded) -> list[Damage]:
     return [
         Damage(f"a channel group cannot be read ({why})", f"'{name}'", "the others were read")
-        for name, why in loaded.told["lost"]
+        for name, why in loaded.result["lost"]
     ]
 
 
@@ -61,7 +61,7 @@ def _tables(path: Path, ask: Ask, loaded: Loaded) -> Tables:
     tables = {}
     for name, columns in loaded.vectors.items():
         if ask.wants(name):
-            written = loaded.told["units"][name].items()
+            written = loaded.result["units"][name].items()
             units = {column: spelled(unit) for column, unit in written if known(unit)}
             tables[name] = Source(path, pl.DataFrame(columns), TIME, "s", units=units)
     return tables

@@ -28,17 +28,17 @@ def load(path: str, part: int | None = None) -> Loaded:
     file = _opened(path, about.st_mtime_ns, about.st_size)
     groups: dict[str, dict[str, np.ndarray]] = {}
     lost = [] if part is None else file.cut()
-    told: dict[str, Any] = {"units": {}, "others": 0, "lost": lost, "parts": file.parts}
+    result: dict[str, Any] = {"units": {}, "others": 0, "lost": lost, "parts": file.parts}
     for index, name in file.names.items():
         try:
             columns, units, others = file.group(index, *file.rows(index, part))
         except Exception as error:
-            told["lost"].append([name, reason(error)])
+            result["lost"].append([name, reason(error)])
             continue
         if len(columns) > 1:
-            groups[name], told["units"][name] = columns, units
-            told["others"] += others
-    return Loaded(groups, told)
+            groups[name], result["units"][name] = columns, units
+            result["others"] += others
+    return Loaded(groups, result)
 
 
 @lru_cache(maxsize=1)

@@ -19,14 +19,14 @@ def quiet() -> Iterator[Aloud]:
         hushed.enter_context(_hushed())
 
         def aloud(call: Callable[..., Any]) -> Callable[..., Any]:
-            def heard(*said: Any) -> Any:
+            def received(*said: Any) -> Any:
                 hushed.close()
                 try:
                     return call(*said)
                 finally:
                     hushed.enter_context(_hushed())
 
-            return heard
+            return received
 
         yield aloud
 

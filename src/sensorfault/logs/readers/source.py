@@ -117,7 +117,7 @@ class Source:
 Tables = dict[str, Source]  # the tables of one file by name; a format with one table a file calls it ""
 
 
-def told(tables: Tables, notes: Iterable[str], damage: Iterable[Damage] = ()) -> Tables:
+def with_notes(tables: Tables, notes: Iterable[str], damage: Iterable[Damage] = ()) -> Tables:
     """The same tables, and what their file's reader has to say of it."""
     said, broken = tuple(notes), tuple(damage)
     return {

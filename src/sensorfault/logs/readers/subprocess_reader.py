@@ -26,23 +26,23 @@ class Loaded:
     """Vectors by table and name, and what else there is to tell of them, as JSON can say it."""
 
     vectors: dict[str, dict[str, np.ndarray]]
-    told: dict[str, Any] = field(default_factory=dict)
+    result: dict[str, Any] = field(default_factory=dict)
 
     def save(self, path: str) -> None:
         """Put it where `saved` finds it."""
         names = [(table, name) for table, vectors in self.vectors.items() for name in vectors]
         arrays: dict[str, Any] = {f"v{i}": self.vectors[table][name] for i, (table, name) in enumerate(names)}
-        np.savez(path, about=np.array(json.dumps([list(self.vectors), names, self.told])), **arrays)
+        np.savez(path, about=np.array(json.dumps([list(self.vectors), names, self.result])), **arrays)
 
     @classmethod
     def saved(cls, path: str) -> "Loaded":
         """What `save` has put there."""
         with np.load(path, allow_pickle=False) as found:
-            tables, names, told = json.loads(str(found["about"]))
+            tables, names, result = json.loads(str(found["about"]))
             vectors: dict[str, dict[str, np.ndarray]] = {table: {} for table in tables}
             for i, (table, name) in enumerate(names):
                 vectors[table][name] = found[f"v{i}"]
-        return cls(vectors, told)
+        return cls(vectors, result)
 
 
 def load_apart(loader: str, path: Path, *more: Any) -> Loaded:

@@ -13,7 +13,7 @@ from sensorfault.logs.readers.fields import Fields
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.protobuf_fields import ProtobufFields
 from sensorfault.logs.readers.ros_types import si_unit_of
-from sensorfault.logs.readers.source import PART, Ask, Source, Tables, told
+from sensorfault.logs.readers.source import PART, Ask, Source, Tables, with_notes
 
 RECEIVED = "received_time"
 _STAMPS = ("header.stamp", "timestamp")  # ROS's, Foxglove's
@@ -49,7 +49,7 @@ class Topics:
         self._topics[topic].take(received_ns, message)
         self._numbers += len(self._topics[topic].fields.names)
         if self._handing.asked and self._numbers >= PART:
-            self._handing.on(told(self._gathered(), self._left_out()))
+            self._handing.on(with_notes(self._gathered(), self._left_out()))
             for of_it in self._topics.values():
                 of_it.clear()
             self._numbers = 0
@@ -93,8 +93,8 @@ class _Topic:
     def __init__(self, kind: str, first: Any) -> None:
         self.kind = kind
         self.fields = ProtobufFields(first) if hasattr(first, "DESCRIPTOR") else Fields(first)
-        told = ((path, parts) for path in _STAMPS for parts in _PARTS if None not in _parts(first, path, parts))
-        self.stamp, self.stamp_parts = next(told, (_STAMPS[0], _PARTS[0]))
+        result = ((path, parts) for path in _STAMPS for parts in _PARTS if None not in _parts(first, path, parts))
+        self.stamp, self.stamp_parts = next(result, (_STAMPS[0], _PARTS[0]))
         quick = not isinstance(first, dict) and None not in _parts(first, self.stamp, self.stamp_parts)
         self._stamp = attrgetter(*(f"{self.stamp}.{part}" for part in self.stamp_parts)) if quick else None
         self.clear()

@@ -10,7 +10,7 @@ from sensorfault.logs.phrase import times
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.native import native_fields
 from sensorfault.logs.readers.quiet import quiet
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, with_notes
 from sensorfault.logs.table import LogError
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def read_ulog(path: Path, ask: Ask) -> Tables:
     if not tables and ask.tables is None:
         where = f" (damaged at {damage[0].where})" if damage else ""
         raise LogError(f"{path}: no topic with a time in this log{where}; name a log of a whole flight.")
-    return told(tables, _dropouts(path, log), damage)
+    return with_notes(tables, _dropouts(path, log), damage)
 
 
 def _load(path: Path, ask: Ask, handing: Handing) -> "Loaded":

@@ -57,7 +57,7 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
         owner=owners(log.channels, log.sensors),
     )
     sigma = _sigma(name, log, monitor, watched)
-    told = {
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "rows": int(rows.sum()),
@@ -65,7 +65,7 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
         "not_watched": {c.path: "not measured" for i, c in enumerate(log.channels) if i not in outputs},
     }
     tests = tuple(("innovation", log.channels[c].path) for c in outputs)
-    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, result)
 
 
 def _two_joints(name: str, log: Log) -> tuple[Joints, Bool[np.ndarray, " C"], Bool[np.ndarray, " T"]]:

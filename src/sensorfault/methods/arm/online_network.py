@@ -80,13 +80,13 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     networks = [replace(one, cov=jnp.diag(jnp.asarray(spread**2))) for one in networks]
     if setting.learning.scratch:
         networks = [untaught(one, np.asarray(sigma.limit()), setting.learning.warm, seed) for one in networks]
-    told = {
+    result = {
         "rows": int(training.rows.sum()),
         "not_watched": training.reasons,
         "inputs": [log.channels[i].path for i in driven],
     }
     return per_channel.model(
-        NAME, log, _side_by_side(networks, log), threshold, spread, told, setting.horizon, statistic
+        NAME, log, _side_by_side(networks, log), threshold, spread, result, setting.horizon, statistic
     )
 
 

@@ -53,7 +53,7 @@ class Training:
         return cls(log, watched, rows, reasons)
 
 
-def deaf(
+def uncalibrated(
     log: Log, residual: Stage[Any, Any, Any, Any], statistic: Stage[Any, Any, Any, Any], readmit_s: float
 ) -> Monitor:
     """The monitor with its limits off: a joint test of the sample and one of exact repeats a channel.
@@ -87,13 +87,13 @@ def limited(
 ) -> Model:
     """The model: `cov` of the healthy residual, the joint `test`'s largest healthy score, the tape of the repeats."""
     log = training.log
-    heard = eqx.tree_at(
+    calibrated = eqx.tree_at(
         lambda m: (m.branches[0].threshold.largest, m.branches[1].threshold.limit),
         monitor,
         (jnp.full(1, largest), jnp.asarray(repeat_limit(runs, log.period_s))),
     )
     tests = ((test, None), *(("repeats", channel.path) for channel in log.channels))
-    told = {
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "rows": int(training.rows.sum()),
@@ -101,4 +101,4 @@ def limited(
     }
     sigma = tuple(np.sqrt(np.diag(np.asarray(cov))).tolist())
     watched = tuple(training.watched.tolist())
-    return Model(name, heard, log.channels, log.sensors, tests, watched, log.period_s, sigma, told)
+    return Model(name, calibrated, log.channels, log.sensors, tests, watched, log.period_s, sigma, result)

@@ -53,8 +53,8 @@ def healthy(
     root mean square of each channel's residual [SI], 1 where there is none.
     """
     channels = len(log.channels)
-    deaf = monitor(log, residual, Fixed(jnp.full(channels, jnp.inf)), statistic=statistic)
-    tape = replay_log(deaf, log)
+    uncalibrated = monitor(log, residual, Fixed(jnp.full(channels, jnp.inf)), statistic=statistic)
+    tape = replay_log(uncalibrated, log)
     score, valid = np.asarray(tape.scores[0]), np.asarray(tape.valid)
     square = np.where(valid, np.asarray(tape.residual) ** 2, 0.0).sum(axis=0) / np.maximum(valid.sum(axis=0), 1)
     spread = np.where(valid.any(axis=0), np.sqrt(square), 1.0)
@@ -67,7 +67,7 @@ def model(
     residual: Stage[Any, Any, Any, Any],
     threshold: Fixed | Sigma,
     spread: Float[np.ndarray, " C"],
-    told: dict[str, Any],
+    result: dict[str, Any],
     horizon: int = HORIZON,
     statistic: Statistic = SIZE,
 ) -> Model:
@@ -78,6 +78,6 @@ def model(
     limits = np.asarray(threshold.limit() if isinstance(threshold, Sigma) else threshold.limit)
     watched = tuple(np.isfinite(limits).tolist())
     finite = {path: float(limit) for path, limit in zip(paths, limits, strict=True) if np.isfinite(limit)}
-    told = {"training_log": log.name, "training_s": log.duration_s, "limits": finite, **told}
+    result = {"training_log": log.name, "training_s": log.duration_s, "limits": finite, **result}
     own = monitor(log, residual, threshold, horizon, statistic)
-    return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(spread.tolist()), told)
+    return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(spread.tolist()), result)

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.calibration.limits import tail_limit
-from sensorfault.calibration.open_loop import deaf, score_tape
+from sensorfault.calibration.open_loop import open_loop_scores, uncalibrated
 from sensorfault.core.monitor import Monitor
 from sensorfault.core.stage import Stage
 from sensorfault.logs.table import Log, LogError
@@ -18,7 +18,7 @@ from sensorfault.runtime.model import Model, hold_s, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.several import Several
-from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.statistic.select_residual import SelectResidual
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.stages.threshold.scaled_max import ScaledMax
 from sensorfault.training.session import Session
@@ -70,7 +70,7 @@ def together(
         for path, reason in model.summary.get("not_watched", {}).items()
         if not watched[log.index(path)]
     }
-    told: dict[str, Any] = {
+    result: dict[str, Any] = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": reasons,
@@ -80,7 +80,7 @@ def together(
     }
     tests = tuple(test for model in models for test in model.tests)
     monitor = _joined(log, models, limits)
-    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, told)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, result)
 
 
 def _answering(models: Sequence[Model]) -> Bool[np.ndarray, "P C"]:
@@ -96,7 +96,7 @@ def _joined(log: Log, models: Sequence[Model], limits: Sequence[Stage[Any, Any, 
     first = _answering(models)
     channels = len(log.channels)
     branches = [
-        replace(branch, statistic=Of(branch.statistic, part))
+        replace(branch, statistic=SelectResidual(branch.statistic, part))
         for part, model in enumerate(models)
         for branch in model.monitor.branches
     ]
@@ -124,7 +124,9 @@ def _limits(
     owns = [branch.threshold for model in models for branch in model.monitor.branches]
     stands = [branch.certain or model.method in kept for model in models for branch in model.monitor.branches]
     limits: list[Stage[Any, Any, Any, Any]] = []
-    for own, stays, tape in zip(owns, stands, score_tape(deaf(_joined(log, models, owns)), log), strict=True):
+    for own, stays, tape in zip(
+        owns, stands, open_loop_scores(uncalibrated(_joined(log, models, owns)), log), strict=True
+    ):
         share = per_hour / (tape.shape[1] * (len(stands) - sum(stands)))
         alone, shared = (tail_limit(tape, log.period_s, rate) for rate in (per_hour, share))
         scaled = (alone > 0) & np.isfinite(shared)

@@ -123,14 +123,14 @@ def fitted(how: Framing, epochs: Log, filter: Filter) -> Filter:
 
 
 def model(
-    name: str, log: Log, how: Framing, epochs: Log, own: Monitor, tests: tuple[str, ...], told: dict[str, Any]
+    name: str, log: Log, how: Framing, epochs: Log, own: Monitor, tests: tuple[str, ...], result: dict[str, Any]
 ) -> Model:
     """`tests` names what each branch tests of each channel, behind a `*` if of all at once."""
     size = np.abs(healthy(how, epochs, own.residual).innovation)  # type: ignore[arg-type]
-    heard = np.isfinite(size).any(axis=0)
+    calibrated = np.isfinite(size).any(axis=0)
     sigma = np.ones(len(how.channels))
-    sigma[heard] = np.nanmedian(size[:, heard], axis=0) / NORMAL
-    everyone = float(np.median(sigma[heard])) if heard.any() else 1.0
+    sigma[calibrated] = np.nanmedian(size[:, calibrated], axis=0) / NORMAL
+    everyone = float(np.median(sigma[calibrated])) if calibrated.any() else 1.0
     paths = [channel.path for channel in how.channels]
     named: list[tuple[str, str | None]] = []
     for test in tests:
@@ -143,7 +143,7 @@ def model(
         tests=tuple(named),
         watched=(True,) * len(paths),
         tick_s=how.period_s,
-        sigma=tuple(np.where(heard, sigma, everyone).tolist()),
-        summary={"training_log": log.name, "training_s": log.duration_s, "epochs": len(epochs), **told},
+        sigma=tuple(np.where(calibrated, sigma, everyone).tolist()),
+        summary={"training_log": log.name, "training_s": log.duration_s, "epochs": len(epochs), **result},
         framing=how,
     )

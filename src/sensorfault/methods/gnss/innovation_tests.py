@@ -13,8 +13,8 @@ from sensorfault.methods.gnss.gnss_ins import Filter, fitted, framed, model, mon
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.blocks import enough
 from sensorfault.runtime.model import Model
-from sensorfault.stages.statistic.averaged_baarda_w import AveragedFreed
-from sensorfault.stages.statistic.baarda_w import Freed
+from sensorfault.stages.statistic.averaged_baarda_w import AveragedBaardaW
+from sensorfault.stages.statistic.baarda_w import BaardaW
 from sensorfault.stages.statistic.mahalanobis import Mahalanobis
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.session import Session
@@ -31,14 +31,14 @@ def whole(how: Framing, false_alarms: float = FALSE_ALARMS) -> Branch:
 
 def one_by_one(how: Framing, satellites: int, false_alarms: float = FALSE_ALARMS) -> Branch:
     """Baarda's w of each, at its share of the false alarms of so many satellites."""
-    return Branch(Freed(), _share(how, satellites, false_alarms))
+    return Branch(BaardaW(), _share(how, satellites, false_alarms))
 
 
 def averaged(how: Framing, satellites: int, window_s: float, false_alarms: float = FALSE_ALARMS) -> Branch:
     """AIME of each satellite over a window. Diesel & Luu 1995."""
     channels = len(how.channels)
     slots = enough(window_s, how.period_s)
-    return Branch(AveragedFreed(jnp.asarray(window_s), channels, slots), _share(how, satellites, false_alarms))
+    return Branch(AveragedBaardaW(jnp.asarray(window_s), channels, slots), _share(how, satellites, false_alarms))
 
 
 def _share(how: Framing, satellites: int, false_alarms: float) -> Fixed:
@@ -60,9 +60,9 @@ def _build(name: str, log: Log, seed: int, session: Session) -> Model:
         branch, test = averaged(how, usual(epochs), WINDOW_S), "averaged innovation"
     else:
         branch, test = whole(how), "*innovation"
-    heard = monitor(how, navigation(how, own), branch)
-    told = {"false_alarms_per_epoch": FALSE_ALARMS, "noise_factor": own.factor}
-    return model(name, log, how, epochs, heard, (test,), told)
+    calibrated = monitor(how, navigation(how, own), branch)
+    result = {"false_alarms_per_epoch": FALSE_ALARMS, "noise_factor": own.factor}
+    return model(name, log, how, epochs, calibrated, (test,), result)
 
 
 def _recipe(name: str, title: str, source: str) -> Recipe:

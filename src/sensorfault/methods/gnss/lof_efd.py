@@ -44,9 +44,9 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     residual = navigation(how, own)
     known, factors = history(healthy(how, epochs, residual).normalised, seed)
     limit = density_limit(factors, FALSE_ALARMS)
-    heard = monitor(how, residual, branch(how, known, limit))
-    told = {"false_alarms_of_density": FALSE_ALARMS, "limit": limit, "noise_factor": own.factor}
-    return model(NAME, log, how, epochs, heard, ("outlier factor",), told)
+    calibrated = monitor(how, residual, branch(how, known, limit))
+    result = {"false_alarms_of_density": FALSE_ALARMS, "limit": limit, "noise_factor": own.factor}
+    return model(NAME, log, how, epochs, calibrated, ("outlier factor",), result)
 
 
 RECIPE = Recipe(

@@ -31,7 +31,7 @@ from sensorfault.stages.statistic.means import Means
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.session import Session
 
-NAME = "train"
+NAME = "rail"
 WINDOWS = 1.0, 5.0, 20.0  # epochs
 GAP = 5.0  # epochs without a satellite after which its windows begin anew
 PER_HOUR = 1.0  # false alarms promised
@@ -62,14 +62,14 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     residual = navigation(how, own)
     told_of = healthy(how, epochs, residual)
     seen = means(how, told_of.normalised)
-    deaf = monitor(how, residual, branch(how, seen, np.inf))
-    score = np.asarray(replay_log(deaf, epochs).scores[0])
+    uncalibrated = monitor(how, residual, branch(how, seen, np.inf))
+    score = np.asarray(replay_log(uncalibrated, epochs).scores[0])
     tested = np.isfinite(score).any(axis=1)
     largest = np.where(tested, np.nanmax(np.where(np.isfinite(score), score, -np.inf), axis=1), np.nan)
     limit = float(tail_limit(largest[:, None], how.period_s, PER_HOUR, BLOCK_S)[0])
-    heard = monitor(how, residual, branch(how, seen, limit))
-    told = {"limit": limit, "noise_factor": own.factor, **_smallest(how, told_of, seen, limit)}
-    return model(NAME, log, how, epochs, heard, ("cumulative innovation",), told)
+    calibrated = monitor(how, residual, branch(how, seen, limit))
+    result = {"limit": limit, "noise_factor": own.factor, **_smallest(how, told_of, seen, limit)}
+    return model(NAME, log, how, epochs, calibrated, ("cumulative innovation",), result)
 
 
 def _smallest(how: Framing, told_of: Healthy, seen: Means, limit: float) -> dict[str, Any]:
@@ -79,10 +79,10 @@ def _smallest(how: Framing, told_of: Healthy, seen: Means, limit: float) -> dict
     ranges = slice(len(how.satellites))
     sigma = float(np.nanmedian(told_of.innovation[:, ranges] / told_of.normalised[:, ranges]))
     at_once, later = ((limit + NINE_OF_TEN) * float(spread) * sigma for spread in (seen.spread[0], seen.spread[-1]))
-    told: dict[str, Any] = {"smallest_step_m": {"at once": at_once, f"in {how.period_s * WINDOWS[-1]:g} s": later}}
+    result: dict[str, Any] = {"smallest_step_m": {"at once": at_once, f"in {how.period_s * WINDOWS[-1]:g} s": later}}
     if inert(np.array([at_once]), ALERT_M).any():
-        told["inert"] = f"A step below {at_once:.0f} m passes unseen at first: the filter doubts itself too much."
-    return told
+        result["inert"] = f"A step below {at_once:.0f} m passes unseen at first: the filter doubts itself too much."
+    return result
 
 
 RECIPE = Recipe(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import jax.numpy as jnp
 import numpy as np
 
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.height.drift_setting import DriftTest, Setting, Statistic
@@ -49,8 +49,8 @@ def drift(log: Log, test: DriftTest) -> Model:
     part = difference(test.name, log, setting)
     statistic = test.statistic(setting, channels)
     off = Fixed(jnp.full(channels, jnp.inf))
-    deaf = monitor(log, part, statistic, off, setting, off)
-    score, level = (tape[:, part.measured] for tape in score_tape(deaf, log))
+    uncalibrated = monitor(log, part, statistic, off, setting, off)
+    score, level = (tape[:, part.measured] for tape in open_loop_scores(uncalibrated, log))
     if not np.isfinite(score).any():
         raise LogError(
             f"{log.name} is never watched for {setting.window_s:g} s without a break, over which {test.name} looks "
@@ -63,8 +63,8 @@ def drift(log: Log, test: DriftTest) -> Model:
     own, lasting = (
         Fixed(jnp.asarray(np.where(np.arange(channels) == part.measured, x, np.inf))) for x in (limit, largest)
     )
-    heard = monitor(log, part, statistic, own, setting, lasting)
-    return _model(test.name, log, heard, part, {"limit": limit, "level": largest}, setting)
+    calibrated = monitor(log, part, statistic, own, setting, lasting)
+    return _model(test.name, log, calibrated, part, {"limit": limit, "level": largest}, setting)
 
 
 def difference(name: str, log: Log, setting: Setting) -> Difference:
@@ -132,9 +132,11 @@ def monitor(
     )
 
 
-def _model(name: str, log: Log, heard: Monitor, part: Difference, limits: dict[str, float], setting: Setting) -> Model:
+def _model(
+    name: str, log: Log, calibrated: Monitor, part: Difference, limits: dict[str, float], setting: Setting
+) -> Model:
     mine = np.arange(len(log.channels)) == part.measured
-    told = {
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "reference": log.channels[part.reference].path,
@@ -145,12 +147,12 @@ def _model(name: str, log: Log, heard: Monitor, part: Difference, limits: dict[s
     }
     return Model(
         method=name,
-        monitor=heard,
+        monitor=calibrated,
         channels=log.channels,
         sensors=log.sensors,
         tests=tuple((test, channel.path) for test in (name, "level") for channel in log.channels),
         watched=tuple(mine.tolist()),
         tick_s=log.period_s,
         sigma=tuple(np.where(mine, np.sqrt(float(part.variance)), 1.0).tolist()),
-        summary=told,
+        summary=result,
     )

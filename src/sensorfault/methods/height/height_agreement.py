@@ -68,7 +68,7 @@ def build(log: Log, seed: int, session: Session) -> Model:
     paths = [log.channels[c].path for c in columns]
     names = [TOGETHER.join((paths[i], paths[j])) for i, j in pairs]
     spans = [f"apart within {length * BEAT_S:g} s" for length in (RECENT, RECENT + PAST)]
-    told = {
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "limits": {s: dict(zip(names, row.tolist(), strict=True)) for s, row in zip(spans, limit, strict=True)},
@@ -85,7 +85,7 @@ def build(log: Log, seed: int, session: Session) -> Model:
         watched=tuple(np.isin(np.arange(len(log.channels)), columns).tolist()),
         tick_s=log.period_s,
         sigma=tuple(sigma.tolist()),
-        summary=told,
+        summary=result,
     )
 
 

@@ -98,7 +98,7 @@ def model(
     watching: Monitor,
     observed: MultistepObserver,
     period_s: float,
-    told: Mapping[str, Any],
+    result: Mapping[str, Any],
 ) -> Model:
     """The model: one test for each number of steps."""
     log, path = heights.log, heights.log.channels[heights.column].path
@@ -111,7 +111,7 @@ def model(
         "steps": np.asarray(observed.steps).tolist(),
         "inputs": [log.channels[i].path for i in observed.model.columns],
         "not_watched": {c.path: "not foretold" for c, m in zip(log.channels, mine, strict=True) if not m},
-        **told,
+        **result,
     }
     return Model(
         name,

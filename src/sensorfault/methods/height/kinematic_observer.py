@@ -47,13 +47,13 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     steps = _steps(fixes, setting)
     watched = height_observer.observer(climb, fixes, steps, heights.column)
     statistic, off = Horizons(heights.column), Fixed(height_observer.silent(len(steps)))
-    deaf = height_observer.monitor(log, watched, statistic, off, setting.horizon_s, fixes.period_s)
-    score = np.asarray(replay_log(deaf, log).scores[0])
+    uncalibrated = height_observer.monitor(log, watched, statistic, off, setting.horizon_s, fixes.period_s)
+    score = np.asarray(replay_log(uncalibrated, log).scores[0])
     limit = Fixed(jnp.asarray(tail_limit(score, log.period_s, PER_HOUR / len(steps), BLOCK_S)))
     watching = height_observer.monitor(log, watched, statistic, limit, setting.horizon_s, fixes.period_s)
     spans = [f"{n * fixes.period_s:.3g}" for n in steps]
-    told = {"limits": dict(zip(spans, np.asarray(limit.limit).tolist(), strict=True))}
-    return height_observer.model(NAME, heights, watching, watched, fixes.period_s, told)
+    result = {"limits": dict(zip(spans, np.asarray(limit.limit).tolist(), strict=True))}
+    return height_observer.model(NAME, heights, watching, watched, fixes.period_s, result)
 
 
 def climbing(heights: Heights, source: str = "") -> Climb:

@@ -15,7 +15,7 @@ from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.residual.several import Several
 from sensorfault.stages.statistic.horizons import Horizons
-from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.statistic.select_residual import SelectResidual
 from sensorfault.stages.threshold.adaptive import Adaptive
 from sensorfault.training.fixes import Fixes
 from sensorfault.training.height_kalman import fit_height_kalman
@@ -73,11 +73,11 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     if not setting.printed:
         threshold = _calibrated(heights, residual, threshold, setting, unseen.period_s, cut)
     weights = {"a": np.asarray(threshold.a).tolist(), "b": np.asarray(threshold.b).tolist()}
-    told = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), **weights}
+    result = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), **weights}
     watching = height_observer.monitor(
         log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s
     )
-    return height_observer.model(NAME, heights, watching, watched, unseen.period_s, told)
+    return height_observer.model(NAME, heights, watching, watched, unseen.period_s, result)
 
 
 def _columns(heights: Heights) -> tuple[int, ...]:
@@ -113,8 +113,8 @@ def _steps(learn: Fixes, unseen: Fixes, setting: Setting) -> tuple[int, ...]:
     return steps
 
 
-def _statistic(heights: Heights) -> Of:
-    return Of(Horizons(heights.column), 0)
+def _statistic(heights: Heights) -> SelectResidual:
+    return SelectResidual(Horizons(heights.column), 0)
 
 
 def _calibrated(

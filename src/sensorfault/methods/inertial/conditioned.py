@@ -4,10 +4,10 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Monitor
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.common.multivariate import LEAST_ROWS, Training, deaf, limited
+from sensorfault.methods.common.multivariate import LEAST_ROWS, Training, limited, uncalibrated
 from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.mahalanobis import Mahalanobis
 from sensorfault.training.conditioning import LAGS, fit_conditioning, unbroken
@@ -28,8 +28,8 @@ def conditioned(name: str, log: Log, levels: bool = True, cross_validated: bool 
     """
     training = in_a_row(name, log)
     residual = fit_conditioning(log.time, log.value, training.rows, training.watched, levels=levels)
-    monitor = deaf(log, residual, Mahalanobis(single=True), READMIT_S)
-    score, runs = score_tape(monitor, log)
+    monitor = uncalibrated(log, residual, Mahalanobis(single=True), READMIT_S)
+    score, runs = open_loop_scores(monitor, log)
     # (10) max(err)
     largest = float(np.nanmax(score))
     if cross_validated:
@@ -53,12 +53,12 @@ def in_a_row(name: str, log: Log) -> Training:
     return training
 
 
-def unseen_scores(deaf: Monitor, training: Training, levels: bool) -> Float[np.ndarray, "T K"]:
+def unseen_scores(uncalibrated: Monitor, training: Training, levels: bool) -> Float[np.ndarray, "T K"]:
     """The joint test's score of each block of the log, by weights fitted on the other blocks."""
     log, unseen = training.log, []
     for block in np.array_split(np.arange(len(log)), BLOCKS):
         known = training.rows.copy()
         known[block] = False
         other = fit_conditioning(log.time, log.value, known, training.watched, levels=levels)
-        unseen.append(score_tape(eqx.tree_at(lambda m: m.residual, deaf, other), log)[0][block])
+        unseen.append(open_loop_scores(eqx.tree_at(lambda m: m.residual, uncalibrated, other), log)[0][block])
     return np.concatenate(unseen)

@@ -4,10 +4,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from sensorfault.calibration.extremes import explained, explained_max
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.calibration.scaling import Scaling
 from sensorfault.logs.table import Log
-from sensorfault.methods.common.multivariate import Training, deaf, limited
+from sensorfault.methods.common.multivariate import Training, limited, uncalibrated
 from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.exchange import Exchange
 from sensorfault.training.cross_validation import Fit, largest_unseen_norm
@@ -32,8 +32,8 @@ def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False, 
         value = value[explained(value).all(axis=1)]
     scaling = Scaling.of(value, watched)
     residual = fit(value, scaling)
-    monitor = deaf(log, residual, Exchange(jnp.asarray(scaling.half)), READMIT_S)
-    norm, runs = score_tape(monitor, log)
+    monitor = uncalibrated(log, residual, Exchange(jnp.asarray(scaling.half)), READMIT_S)
+    norm, runs = open_loop_scores(monitor, log)
     # (10) max(err), over the training data
     tested = norm[np.isfinite(norm)]
     largest = explained_max(tested) if robust else float(tested.max())

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from sensorfault.calibration.gumbel import gumbel_limit
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.calibration.whiteness import whiten
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log
@@ -50,7 +50,7 @@ def bicycle_kalman(name: str, log: Log) -> Model:
     )
     groups = (filter.columns.position, filter.columns.velocity)
     silent = [Fixed(jnp.full(k, jnp.inf)) for k in (len(groups), 3 * len(measured))]
-    deaf = Monitor(
+    uncalibrated = Monitor(
         residual=filter,
         branches=(
             Branch(Whitened(groups, channels), silent[0], subject=MOTION, memory_s=LOST_S),
@@ -61,11 +61,13 @@ def bicycle_kalman(name: str, log: Log) -> Model:
         hold_s=jnp.asarray(hold_s(log)),
         owner=owners(log.channels, log.sensors),
     )
-    monitor = eqx.tree_at(lambda m: [b.threshold.limit for b in m.branches], deaf, _limits(deaf, window, log))
+    monitor = eqx.tree_at(
+        lambda m: [b.threshold.limit for b in m.branches], uncalibrated, _limits(uncalibrated, window, log)
+    )
     tests = [f"whitened innovation of {what}" for what in ("position", "velocity")]
     paths = [log.channels[c].path for c in measured]
     tests += [f"{test} of {path}" for test in ("Jarque-Bera", "mean", "variance") for path in paths]
-    told = {
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "turned_by": "steering angle" if filter.columns.steering else "yaw rate",
@@ -80,7 +82,7 @@ def bicycle_kalman(name: str, log: Log) -> Model:
         watched=tuple(i in measured for i in range(channels)),
         tick_s=log.period_s,
         sigma=(1.0,) * channels,
-        summary=told,
+        summary=result,
     )
 
 
@@ -89,10 +91,10 @@ def _warm(log: Log) -> Float[np.ndarray, " T"]:
     return times
 
 
-def _limits(deaf: Monitor, window: Normality, log: Log) -> list[Float[Array, " K"]]:
+def _limits(uncalibrated: Monitor, window: Normality, log: Log) -> list[Float[Array, " K"]]:
     """From the training drive: half of the alarms allowed to the instant tests, half to the windows."""
     rows = log.time > log.time[0] + WARM_S
-    instant, windows = (tape[rows] for tape in score_tape(deaf, log))
+    instant, windows = (tape[rows] for tape in open_loop_scores(uncalibrated, log))
     at_once = gumbel_limit(instant, _warm(log), PER_HOUR / 2 / instant.shape[1], INSTANT_BLOCK_S)
     share = PER_HOUR / 2 / windows.shape[1]
     width = len(window.watched)

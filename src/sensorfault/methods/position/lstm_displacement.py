@@ -44,15 +44,15 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     positions, inertial = _told_by(log)
     untrained = _untrained(positions, inertial, seed, size)
     x = samples(log.time, log.value, log.fresh)
-    deaf = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
+    uncalibrated = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
     keep = jax.jit(lambda m, s, rows: replay(m, s, rows, lambda r: (r.residual.extra, r.residual.valid))[1])
-    off = eqx.tree_at(lambda m: m.branches[0].threshold.largest, deaf, jnp.full(1, jnp.inf))
+    off = eqx.tree_at(lambda m: m.branches[0].threshold.largest, uncalibrated, jnp.full(1, jnp.inf))
     seen, valid = jax.tree.map(np.asarray, keep(off, off.init(), x))
     windows, mend = _windows(seen, valid[:, list(positions.columns)].all(axis=1))
     network = train(untrained.network, windows, size.plan, seed, session).net
     residual = eqx.tree_at(lambda r: (r.network, r.mend), untrained, (network, jnp.asarray(mend)))
-    told = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
-    return limited(NAME, positions, residual, told, METRE / _cosines(positions))
+    result = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
+    return limited(NAME, positions, residual, result, METRE / _cosines(positions))
 
 
 METRE = 1 / SEMI_MAJOR_AXIS  # [rad]

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Bool
 
 from sensorfault.calibration.limits import tail_limit
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.recipe import Recipe
@@ -22,10 +22,10 @@ from sensorfault.stages.residual.motion_deficit import MotionDeficit
 from sensorfault.stages.residual.several import Several
 from sensorfault.stages.residual.velocity_deficit import VelocityDeficit
 from sensorfault.stages.statistic.deficit import Deficit
-from sensorfault.stages.statistic.select_residual import Of
+from sensorfault.stages.statistic.select_residual import SelectResidual
 from sensorfault.stages.statistic.shortfall import Shortfall
 from sensorfault.stages.statistic.slippage import Slippage
-from sensorfault.stages.statistic.stuck_position import Standing
+from sensorfault.stages.statistic.stuck_position import StuckPosition
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.deficit import fit_deficit, fit_velocity
 from sensorfault.training.mounting import fit_mounting, inertial
@@ -61,7 +61,7 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
     unit, reason = _unit(log, found)
     parts, answers, tests = _parts(log, found, unit, repeats)
     channels, count = len(log.channels), sum(len(names) for names, _, _ in tests)
-    deaf = Monitor(
+    uncalibrated = Monitor(
         residual=Several(parts, jnp.stack(answers)),
         branches=tuple(
             Branch(test, Fixed(jnp.full(len(names), jnp.inf)), memory_s=_presumes_s(test)) for names, test, _ in tests
@@ -74,13 +74,15 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
     )
     limits = [
         np.maximum(MARGIN * tail_limit(scores, log.period_s, PER_HOUR / count), floor)
-        for (_, _, floor), scores in zip(tests, score_tape(deaf, log), strict=True)
+        for (_, _, floor), scores in zip(tests, open_loop_scores(uncalibrated, log), strict=True)
     ]
     monitor = eqx.tree_at(
-        lambda m: [branch.threshold.limit for branch in m.branches], deaf, [jnp.asarray(limit) for limit in limits]
+        lambda m: [branch.threshold.limit for branch in m.branches],
+        uncalibrated,
+        [jnp.asarray(limit) for limit in limits],
     )
     watched = np.asarray(jnp.stack(answers).any(axis=0))
-    told = {
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": {
@@ -88,7 +90,7 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         },
     }
     if reason:
-        told["cannot"] = {"velocity against the inertial unit": reason}
+        result["cannot"] = {"velocity against the inertial unit": reason}
     return Model(
         method=name,
         monitor=monitor,
@@ -98,7 +100,7 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         watched=tuple(watched.tolist()),
         tick_s=log.period_s,
         sigma=tuple(_sigma(parts, found, channels).tolist()),
-        summary=told,
+        summary=result,
     )
 
 
@@ -158,11 +160,11 @@ def _parts(
     place = _mask(channels, *found.position)
     short_s = jnp.asarray(max(SHORT_S, 2 * period_s))
     tests: list[Test] = [
-        (tuple(f"deficit over {horizon:g} s" for horizon in horizons_s), Of(Deficit(place), 0), 0.0),
-        (("shortfall",), Of(Shortfall(short_s, jnp.asarray(HALF), place, found.position), 0), FLOOR_M),
+        (tuple(f"deficit over {horizon:g} s" for horizon in horizons_s), SelectResidual(Deficit(place), 0), 0.0),
+        (("shortfall",), SelectResidual(Shortfall(short_s, jnp.asarray(HALF), place, found.position), 0), FLOOR_M),
     ]
     if repeats:
-        tests.append((("standing",), Of(Standing(place, found.position), 0), FLOOR_M))
+        tests.append((("standing",), SelectResidual(StuckPosition(place, found.position), 0), FLOOR_M))
     parts: tuple[Any, ...] = (fit_deficit(deficit, log),)
     if unit is None:
         return parts, [place], tests
@@ -178,11 +180,13 @@ def _parts(
     against = fit_velocity(against, log)
     whole = _mask(channels, *found.velocity)
     speed, course = (_mask(channels, i) if found.polar else whole for i in found.velocity)
-    tests.append((("slip along", "slip across"), Of(Slippage(jnp.sqrt(against.variance), speed, course), 1), 0.0))
+    tests.append(
+        (("slip along", "slip across"), SelectResidual(Slippage(jnp.sqrt(against.variance), speed, course), 1), 0.0)
+    )
     return (*parts, against), [place, whole], tests
 
 
-def _named(log: Log, names: tuple[str, ...], of: Of) -> Iterator[tuple[str, str]]:
+def _named(log: Log, names: tuple[str, ...], of: SelectResidual) -> Iterator[tuple[str, str]]:
     """Each test with the paths of the channels that it accuses."""
     test = of.statistic
     masks = [test.along, test.across] if isinstance(test, Slippage) else [test.accused] * len(names)  # type: ignore[attr-defined]
@@ -190,7 +194,7 @@ def _named(log: Log, names: tuple[str, ...], of: Of) -> Iterator[tuple[str, str]
         yield name, TOGETHER.join(c.path for c, mine in zip(log.channels, np.asarray(mask), strict=True) if mine)
 
 
-def _presumes_s(of: Of) -> float:
+def _presumes_s(of: SelectResidual) -> float:
     """After a slide a velocity that differs from the inertial unit's is no sensor's fault, until it leads that anew."""
     return LED_S if isinstance(of.statistic, Slippage) else 0.0
 

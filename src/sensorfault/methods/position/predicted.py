@@ -113,7 +113,7 @@ def limited(
     name: str,
     positions: Positions,
     residual: Prediction | Extrapolation | Displacement,
-    told: dict[str, Any],
+    result: dict[str, Any],
     unit: Float[np.ndarray, "2"] | None = None,
 ) -> Model:
     """The model: covariance and largest error from a replay with the limit off.
@@ -127,7 +127,7 @@ def limited(
     channels = len(log.channels)
     scale = np.ones(channels)
     scale[columns] = positions.half if unit is None else unit
-    deaf = Monitor(
+    uncalibrated = Monitor(
         residual=residual,
         branches=(Branch(Norm(jnp.asarray(scale)), ScaledMax(jnp.full(1, jnp.inf))),),
         decision=Exceed(),
@@ -136,7 +136,7 @@ def limited(
         owner=owners(log.channels, log.sensors),
         most=1,
     )
-    tape = replay_log(deaf, log)
+    tape = replay_log(uncalibrated, log)
     tested = np.asarray(tape.valid)[:, columns].all(axis=1)
     if tested.sum() < LEAST_FIXES:
         raise LogError(
@@ -149,7 +149,9 @@ def limited(
     # (10) max(err), of the 2-norm (13)-(15) over the training data
     largest = np.nanmax(tape.scores[0], axis=0)
     monitor = eqx.tree_at(
-        lambda m: (m.residual.cov, m.branches[0].threshold.largest), deaf, (jnp.asarray(cov), jnp.asarray(largest))
+        lambda m: (m.residual.cov, m.branches[0].threshold.largest),
+        uncalibrated,
+        (jnp.asarray(cov), jnp.asarray(largest)),
     )
     watched = positions.mark(positions.columns)
     reasons = {c.path: "not predicted" for c, w in zip(log.channels, watched, strict=True) if not w}
@@ -158,7 +160,7 @@ def limited(
         "training_s": log.duration_s,
         "rows": int(tested.sum()),
         "not_watched": reasons,
-        **told,
+        **result,
     }
     sigma = tuple(np.sqrt(np.diag(cov)).tolist())
     tests = (("norm", None),)

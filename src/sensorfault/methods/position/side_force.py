@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from sensorfault.calibration.limits import tail_limit
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log
 from sensorfault.methods.recipe import Recipe
@@ -33,7 +33,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     columns = (*residual.unit.gyro, *residual.unit.accelerometer, *residual.velocity)
     compared = np.isin(np.arange(len(log.channels)), columns)
     statistic = Lasting(jnp.asarray(CONSTANT_S), jnp.asarray(compared))
-    deaf = Monitor(
+    uncalibrated = Monitor(
         residual=residual,
         branches=(Branch(statistic, Fixed(jnp.full(1, jnp.inf)), subject=MOTION, memory_s=MEMORY_S, excuses=True),),
         decision=Exceed(),
@@ -41,8 +41,8 @@ def _build(log: Log, seed: int, session: Session) -> Model:
         hold_s=jnp.asarray(hold_s(log)),
         owner=owners(log.channels, log.sensors),
     )
-    limit = MARGIN * tail_limit(score_tape(deaf, log)[0], log.period_s, PER_HOUR)
-    told = {
+    limit = MARGIN * tail_limit(open_loop_scores(uncalibrated, log)[0], log.period_s, PER_HOUR)
+    result = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": {
@@ -51,14 +51,14 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     }
     return Model(
         method=RECIPE.name,
-        monitor=eqx.tree_at(lambda m: m.branches[0].threshold.limit, deaf, jnp.asarray(limit)),
+        monitor=eqx.tree_at(lambda m: m.branches[0].threshold.limit, uncalibrated, jnp.asarray(limit)),
         channels=log.channels,
         sensors=log.sensors,
         tests=(("side force", MOTION),),
         watched=tuple(compared.tolist()),
         tick_s=log.period_s,
         sigma=(1.0,) * len(log.channels),
-        summary=told,
+        summary=result,
     )
 
 

@@ -44,9 +44,9 @@ def anfis(
     limits = np.array([3 * fit.rmse for fit in fits]) if rmse else np.full(len(fits), WRONG * filter.sigma_m)
     columns = tuple(leader.range for leader in found.leaders)
     test = FuzzyInference(tuple(fit.model for fit in fits), widest(labelled), columns)
-    heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, limits)))
-    told = {"rmse_m": [fit.rmse for fit in fits], "limits_m": limits.tolist()}
-    return model(name, log, found, heard, ("foretold error",), filter, told)
+    calibrated = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, limits)))
+    result = {"rmse_m": [fit.rmse for fit in fits], "limits_m": limits.tolist()}
+    return model(name, log, found, calibrated, ("foretold error",), filter, result)
 
 
 def _recipe(rmse: bool) -> Recipe:

@@ -41,8 +41,8 @@ def chi_square(name: str, log: Log, far: float, filter: Filter | None = None, ad
     """
     found = followed(name, log)
     own = filter or fitted(log, found, Filter(adaptive=adaptive, growth=GROWTH))
-    heard = gate(log, found, cubature(log, found, own), far)
-    return model(name, log, found, heard, ("chi-square",), own, {"false_alarms": far})
+    calibrated = gate(log, found, cubature(log, found, own), far)
+    return model(name, log, found, calibrated, ("chi-square",), own, {"false_alarms": far})
 
 
 def _recipe(far: float, adaptive: bool) -> Recipe:

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.calibration.limits import repeat_limit
-from sensorfault.calibration.open_loop import score_tape
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log
 from sensorfault.methods.ranging.chi_square_cubature import limit
@@ -41,24 +41,24 @@ def cooperative(name: str, log: Log, filter: Filter | None = None) -> Model:
     """
     found = followed(name, log)
     own = filter or fitted(log, found, Filter(growth=GROWTH, repeated=REPEATED))
-    heard, longest = gates(log, found, cubature(log, found, own))
-    told = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
-    return model(name, log, found, heard, ("chi-square", "repeats"), own, told)
+    received, longest = gates(log, found, cubature(log, found, own))
+    result = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
+    return model(name, log, found, received, ("chi-square", "repeats"), own, result)
 
 
 def gates(log: Log, found: FollowerRoles, residual: Cubature) -> tuple[Monitor, Float[np.ndarray, " L"]]:
     """The filter behind both tests, and the longest run of repeats that each leader of this healthy log is allowed."""
     repeats = Repeats(len(log.channels))
-    runs = score_tape(monitor(log, residual, Branch(repeats, on_ranges(log, found, np.inf))), log)[0]
+    runs = open_loop_scores(monitor(log, residual, Branch(repeats, on_ranges(log, found, np.inf))), log)[0]
     columns = [leader.range for leader in found.leaders]
     longest = np.maximum(repeat_limit(runs, log.period_s)[columns], LEAST_RUN)
-    heard = monitor(
+    received = monitor(
         log,
         residual,
         Branch(Normalised(), on_ranges(log, found, limit(FALSE_ALARMS))),
         Branch(repeats, on_ranges(log, found, longest), certain=True),
     )
-    return heard, longest
+    return received, longest
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:

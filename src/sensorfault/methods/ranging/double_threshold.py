@@ -60,8 +60,8 @@ def double_threshold(
         window=WINDOW,
         channels=len(log.channels),
     )
-    heard = monitor(log, residual, Branch(test, on_ranges(log, found, 1.0)))
-    return model(name, log, found, heard, ("double threshold",), filter, {"low": LOW, "high": HIGH})
+    calibrated = monitor(log, residual, Branch(test, on_ranges(log, found, 1.0)))
+    return model(name, log, found, calibrated, ("double threshold",), filter, {"low": LOW, "high": HIGH})
 
 
 def _windows(runs: Sequence[Run], wrong_m: float) -> Windows:

@@ -31,8 +31,8 @@ def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, labelled
     wrong_m = WRONG * filter.sigma_m
     models = tuple(fit_logistic(features, size > wrong_m) for features, size in labelled)
     test = LogisticRegression(models, widest(labelled), tuple(leader.range for leader in found.leaders))
-    heard = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, 0.0)))
-    return model(name, log, found, heard, ("log odds",), filter, {"wrong_m": wrong_m})
+    calibrated = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, 0.0)))
+    return model(name, log, found, calibrated, ("log odds",), filter, {"wrong_m": wrong_m})
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:

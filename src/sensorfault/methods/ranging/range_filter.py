@@ -121,12 +121,12 @@ def model(
     own: Monitor,
     tests: tuple[str, ...],
     filter: Filter,
-    told: dict[str, Any],
+    result: dict[str, Any],
 ) -> Model:
     """`tests` names what each branch tests of each channel; `sigma` is that of the healthy innovations."""
     ranges = [leader.range for leader in found.leaders]
-    deaf = monitor(log, own.residual)  # type: ignore[arg-type]
-    tape = replay_log(deaf, submerged(log, found.position))
+    uncalibrated = monitor(log, own.residual)  # type: ignore[arg-type]
+    tape = replay_log(uncalibrated, submerged(log, found.position))
     sigma = np.ones(len(log.channels))
     for column in ranges:
         seen = tape.residual[tape.valid[:, column], column]
@@ -138,7 +138,7 @@ def model(
         "training_s": log.duration_s,
         "process_noise_m2_s": filter.q,
         "range_sigma_m": filter.sigma_m,
-        **told,
+        **result,
         "not_watched": {path: "not measured" for path, m in zip(paths, mine, strict=True) if not m},
     }
     return Model(

@@ -12,10 +12,10 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
     blame times score over limit. Struck channels stay accused; their size is -inf, since they are out already. Where
     a test can say nothing on whose account it is over, all it covers are suspect.
     """
-    named = gated = certain = suspect = tested = evidence.struck
-    unlaid = jnp.zeros_like(evidence.struck)
-    size = jnp.full(evidence.struck.shape, -jnp.inf)
-    hit = evidence.struck.any()
+    named = gated = certain = suspect = tested = evidence.excluded
+    unattributed = jnp.zeros_like(evidence.excluded)
+    size = jnp.full(evidence.excluded.shape, -jnp.inf)
+    hit = evidence.excluded.any()
     branches = zip(evidence.scores, evidence.limits, evidence.gates, evidence.certain, strict=True)
     for score, limit, gates, alone in branches:
         over = score.valid & (score.value > limit)
@@ -28,8 +28,10 @@ def accuse(evidence: Evidence, share: float) -> Accusation:
         gated |= accused & gates
         certain |= accused & alone
         nobody = (over[:, None] & (most <= 0) & score.covers).any(axis=0)
-        unlaid |= nobody
+        unattributed |= nobody
         suspect |= nobody | (over[:, None] & (score.blame > 0)).any(axis=0)
         tested |= (score.valid[:, None] & score.covers).any(axis=0)
         hit |= over.any()
-    return Accusation(named, gated, certain, suspect, unlaid, jnp.where(evidence.struck, -jnp.inf, size), tested, hit)
+    return Accusation(
+        named, gated, certain, suspect, unattributed, jnp.where(evidence.excluded, -jnp.inf, size), tested, hit
+    )

@@ -25,7 +25,7 @@ class Belief(NamedTuple):
     torque: Float[Array, "2"]  # [N m]
     known: Bool[Array, ""]  # whether both torques are of the sample before
     time: Float[Array, ""]  # [s]
-    heard: Float[Array, ""]  # when a sensor was last taken in [s]
+    received: Float[Array, ""]  # when a sensor was last taken in [s]
     alive: Bool[Array, ""]
     settled: Bool[Array, ""]  # whether it has known the arm about as well as the sensors do
 
@@ -91,14 +91,14 @@ class ArmKalman(eqx.Module):
             torque=jnp.where(now, picked(sample.value, self.torques), prior.torque),
             known=now.all(),
             time=sample.time,
-            heard=jnp.where(taken, sample.time, prior.heard),
+            received=jnp.where(taken, sample.time, prior.received),
             alive=prior.alive | begins,
             settled=prior.settled,
         )
 
     def _predict(self, belief: Belief, time: Float[Array, ""]) -> Belief:
         dt = time - belief.time
-        good = belief.alive & (dt >= 0) & (time - belief.heard <= self.gap_s)
+        good = belief.alive & (dt >= 0) & (time - belief.received <= self.gap_s)
         dt = jnp.where(good, dt, 0.0)
         # x(k|k-1) = f(x(k-1|k-1), u),  F = ∂f/∂x
         mean = self.arm.ahead(belief.mean, belief.torque, dt)

@@ -55,7 +55,7 @@ class _Belief(NamedTuple):
     time: Float[Array, ""]  # [s]
     rejected: Float[Array, ""]  # measurements refused since one was last taken in
     last: Float[Array, " M"]  # measurements as they were last taken in; NEVER where none was
-    heard: Float[Array, " M"]  # when that was [s]
+    received: Float[Array, " M"]  # when that was [s]
     learned: Any  # of the measurements' noise
     alive: Bool[Array, ""]
 
@@ -105,7 +105,7 @@ class Cubature(eqx.Module):
         there = picked(sample.fresh, motion.observed) & motion.ready(sample) & prior.alive
         said = picked(sample.value, motion.observed)
         innovation = jnp.where(there, said - seen.expected, 0.0)
-        stale = sample.time - prior.heard > self.stale_s
+        stale = sample.time - prior.received > self.stale_s
         curved = jnp.where(stale, bent(seen, motion.expected(prior.mean, sample)), 0.0)
         predicted = (seen.dz**2).sum(axis=1) + curved
         used = self.noise.noise(prior.learned, self.r, innovation, predicted)
@@ -144,7 +144,7 @@ class Cubature(eqx.Module):
             time=sample.time,
             rejected=jnp.where(taken.any() | begins, 0.0, jnp.minimum(prior.rejected + refused, MANY)),
             last=jnp.where(taken, picked(sample.value, motion.observed), prior.last),
-            heard=jnp.where(taken, sample.time, prior.heard),
+            received=jnp.where(taken, sample.time, prior.received),
             learned=self.noise.learn(prior.learned, innovation, predicted, taken),
             alive=prior.alive | begins,
         )

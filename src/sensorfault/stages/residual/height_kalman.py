@@ -21,7 +21,7 @@ class _Belief(NamedTuple):
     cov: Float[Array, "4 4"]
     push: Float[Array, ""]  # upward acceleration, as last measured [m/s^2]
     time: Float[Array, ""]  # [s]
-    heard: Float[Array, ""]  # when a height was last taken in [s]
+    received: Float[Array, ""]  # when a height was last taken in [s]
     known: Int[Array, ""]  # heights taken in, WARM at most
     felt: Bool[Array, ""]  # whether `push` was measured
     alive: Bool[Array, ""]
@@ -98,14 +98,14 @@ class HeightKalman(eqx.Module):
             push=push,
             felt=felt,
             time=sample.time,
-            heard=jnp.where(taken, sample.time, prior.heard),
+            received=jnp.where(taken, sample.time, prior.received),
             known=jnp.where(taken, jnp.minimum(known + 1, WARM), known),
             alive=prior.alive | begins,
         )
 
     def _predict(self, belief: _Belief, time: Float[Array, ""]) -> _Belief:
         dt = time - belief.time
-        good = belief.alive & (dt >= 0) & (time - belief.heard <= self.gap_s)
+        good = belief.alive & (dt >= 0) & (time - belief.received <= self.gap_s)
         dt = jnp.where(good, dt, 0.0)
         one, none, half = jnp.ones(()), jnp.zeros(()), dt**2 / 2
         felt = belief.felt.astype(float)

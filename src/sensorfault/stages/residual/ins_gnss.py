@@ -66,7 +66,7 @@ class InsGnss(eqx.Module):
         z = jnp.where(there, sample.value / own - lines.expected, 0.0)
         prior, z = clock_jump(prior, lines, z, satellites)
         if self.bank:
-            value, cov = left_out.told(prior, lines.rows, z, lines.variance)
+            value, cov = left_out.leave_one_out(prior, lines.rows, z, lines.variance)
         else:
             value, cov = z, lines.rows @ prior.cov @ lines.rows.T + jnp.diag(lines.variance)
         residual = Residual(

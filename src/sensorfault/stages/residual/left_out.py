@@ -8,7 +8,7 @@ from sensorfault.numerics.kalman import correct_many
 from sensorfault.stages.residual.ins_belief import Belief
 
 
-def told(
+def leave_one_out(
     prior: Belief, rows: Float[Array, "C n"], z: Float[Array, " C"], variance: Float[Array, " C"]
 ) -> tuple[Float[Array, " C"], Float[Array, "C C"]]:
     """Innovation of each measurement against the filter without its satellite, and their variances."""

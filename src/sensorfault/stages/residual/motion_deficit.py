@@ -39,8 +39,8 @@ class Deficits(NamedTuple):
 
 class _State(NamedTuple):
     time: Float[Array, ""]
-    told: Float[Array, "2"]  # the last trusted velocity, east and north [m/s]
-    heard: Float[Array, ""]  # when it came [s]
+    result: Float[Array, "2"]  # the last trusted velocity, east and north [m/s]
+    received: Float[Array, ""]  # when it came [s]
     ground: Float[Array, "2"]  # the velocity now, without the receiver's lag [m/s]
     ahead: Float[Array, "2"]  # what the receiver's lag has not shown yet: turn [rad], speed [m/s]
     stuck: Float[Array, ""]  # for how long a velocity has repeated itself to the last bit [s]
@@ -52,7 +52,7 @@ class _Work(NamedTuple):
 
     state: _State
     new: Bool[Array, ""]  # there is a new velocity
-    told: Float[Array, "2"]
+    result: Float[Array, "2"]
     now: Float[Array, "2"]  # without the lag
     mended: Float[Array, "2"]  # [m]
     longer: Float[Array, ""]  # [m]
@@ -93,14 +93,14 @@ class MotionDeficit(eqx.Module):
         place = jnp.stack([sample.value[i] for i in self.position])
         fix = jnp.stack([sample.fresh[i] for i in self.position]).all() & on_the_map(place[0], place[1])
         new = sample.fresh[first] & sample.fresh[second]
-        told = ground_velocity(sample.value[first], sample.value[second], self.polar)
+        result = ground_velocity(sample.value[first], sample.value[second], self.polar)
         dt = jnp.clip(sample.time - state.time, 0.0, HOLD_S)
 
-        silence = sample.time - state.heard
+        silence = sample.time - state.received
         lasting = (silence >= 0) & (silence <= HOLD_S)  # else the way since any place is lost
         since = jnp.clip(silence, 0.0, HOLD_S)
         # by the lag's measure of the sample before, which has been judged
-        held, now = (turned(velocity, state.ahead[0], state.ahead[1]) for velocity in (state.told, told))
+        held, now = (turned(velocity, state.ahead[0], state.ahead[1]) for velocity in (state.result, result))
         step = (state.ground + held) / 2 * dt
         trail = state.trail.kept(lasting).carried(dt, step, jnp.linalg.norm(step))
         trail = trail.kept(trail.age[0] <= self.afresh_s)
@@ -109,8 +109,8 @@ class MotionDeficit(eqx.Module):
         longer = (jnp.linalg.norm(now) - jnp.linalg.norm(held)) / 2 * since
         carried = state._replace(time=sample.time, ground=held, trail=trail)
         ahead = self._ahead(state.ahead, sample, dt)
-        repeated = (told == state.told).all() & (jnp.linalg.norm(told) > STANDING)
-        work = _Work(carried, new, told, now, mended, longer, place, fix, ahead, sample.fresh, repeated)
+        repeated = (result == state.result).all() & (jnp.linalg.norm(result) > STANDING)
+        work = _Work(carried, new, result, now, mended, longer, place, fix, ahead, sample.fresh, repeated)
 
         here = _mended(work, new)
         length = jnp.where(lasting, jnp.maximum(jnp.linalg.norm(step) + jnp.where(new, longer, 0.0), 0.0), 0.0)
@@ -121,7 +121,7 @@ class MotionDeficit(eqx.Module):
     def update(self, work: _Work, trust: Trust) -> _State:
         believed = jnp.stack([trust.measured[i] for i in self.velocity]).all() & work.new
         state = _mended(work, believed)
-        silence = state.time - state.heard
+        silence = state.time - state.received
         known = (silence >= 0) & (silence <= HOLD_S)
         trusted = jnp.stack([trust.measured[i] for i in self.position]).all() & work.fix & known
         trail = state.trail.put(trusted, work.place[0], work.place[1], state.ground, self.spacing_s)
@@ -154,8 +154,8 @@ class MotionDeficit(eqx.Module):
             variance = (law * terms).sum() + (GROWTH * held_s**2 / 2) ** 2
             return since.way - gone, jnp.sqrt(variance), since.age, since.path, swing, since.there & fix
 
-        told: tuple[Array, ...] = jax.vmap(over)(self.horizon_s, self.law)
-        return told
+        result: tuple[Array, ...] = jax.vmap(over)(self.horizon_s, self.law)
+        return result
 
     def _residual(self, sample: Sample, trail: Trail, deficits: Deficits) -> Residual:
         """In the units of the channels: measured position minus that of the reference carried on [rad]."""
@@ -180,14 +180,14 @@ class MotionDeficit(eqx.Module):
 def _mended(work: _Work, by: Bool[Array, ""]) -> _State:
     """The state with this sample's velocity taken in, or without it."""
     state, trail = work.state, work.state.trail
-    since = jnp.clip(state.time - state.heard, 0.0, HOLD_S)
-    freed = by & ~work.repeated & (state.stuck > HOLD_S)
-    trail = trail.kept(~freed)
+    since = jnp.clip(state.time - state.received, 0.0, HOLD_S)
+    baarda_w = by & ~work.repeated & (state.stuck > HOLD_S)
+    trail = trail.kept(~baarda_w)
     way = trail.way + jnp.where(by & trail.there[:, None], work.mended[None], 0.0)
     path = trail.path + jnp.where(by & trail.there, work.longer, 0.0)
     return state._replace(
-        told=jnp.where(by, work.told, state.told),
-        heard=jnp.where(by, state.time, state.heard),
+        result=jnp.where(by, work.result, state.result),
+        received=jnp.where(by, state.time, state.received),
         ground=jnp.where(by, work.now, state.ground),
         stuck=jnp.where(by, jnp.where(work.repeated, state.stuck + since, 0.0), state.stuck),
         trail=trail._replace(way=way, path=path),

@@ -31,7 +31,7 @@ class _Work(NamedTuple):
     sample: Sample
     inputs: Float[Array, " U"]
     known: Bool[Array, ""]  # all inputs
-    foretold: Bool[Array, ""]  # whether there is a height to expect now
+    predicted: Bool[Array, ""]  # whether there is a height to expect now
     origin: Float[Array, ""]  # as above, of that height
 
 
@@ -94,12 +94,12 @@ class MultistepObserver(eqx.Module):
         return residual, _Work(state, sample, inputs, known, ready[-1], origin)
 
     def update(self, pending: _Work, trust: Trust) -> _State:
-        state, sample, inputs, known, foretold, origin = pending
+        state, sample, inputs, known, predicted, origin = pending
         c = self.column
         fix, measured = sample.fresh[c], trust.measured[c]
         new = picked(sample.fresh, self.model.columns)
         taken = picked(trust.measured | trust.filled, self.model.columns)
-        whole = (measured | (trust.filled[c] & foretold)) & known & (taken | ~new).all()
+        whole = (measured | (trust.filled[c] & predicted)) & known & (taken | ~new).all()
         inputs = jnp.where(picked(trust.filled, self.model.columns), picked(trust.value, self.model.columns), inputs)
         after = _State(
             height=shifted(state.height, trust.value[c]),

@@ -19,7 +19,7 @@ class _State(NamedTuple):
     outputs: Float[Array, "m D"]  # y(k) .. y(k-m+1), as far as they were trusted or stood in for [SI]
     inputs: Float[Array, "n U"]  # u(k) .. u(k-n+1) [SI]
     known: Float[Array, " D"]  # rows of the window since the output came (again), m at most
-    heard: Float[Array, ""]  # rows since all inputs came (again), n + 1 at most
+    received: Float[Array, ""]  # rows since all inputs came (again), n + 1 at most
     clean: Float[Array, ""]  # rows since all outputs were taken at their word (again), m at most
     quiet: Float[Array, ""]  # learned samples in a row that were foretold well, `warm` at most
     time: Float[Array, ""]  # of y(k) [s]
@@ -70,7 +70,7 @@ class OnlineNetwork(eqx.Module):
             outputs=jnp.tile(self.center[:d], (m, 1)),
             inputs=jnp.tile(self.center[d:], (n, 1)),
             known=jnp.zeros(d),
-            heard=nothing,
+            received=nothing,
             clean=nothing,
             quiet=nothing,
             time=jnp.asarray(NEVER, float),
@@ -84,7 +84,7 @@ class OnlineNetwork(eqx.Module):
         there = picked(sample.present, self.driven).all()
         state = state._replace(
             known=jnp.where(anew, 0.0, state.known),
-            heard=jnp.where(there, jnp.minimum(jnp.where(gone, 0.0, state.heard), n) + 1, 0.0),
+            received=jnp.where(there, jnp.minimum(jnp.where(gone, 0.0, state.received), n) + 1, 0.0),
             clean=jnp.where(anew.any(), 0.0, state.clean),
         )
         inputs = jnp.concatenate([picked(sample.value, self.driven)[None], state.inputs])
@@ -92,7 +92,7 @@ class OnlineNetwork(eqx.Module):
         # (1) y~(k+1) = F(y(k) .. y(k-m+1), u(k+1) .. u(k-n+1))
         origin, unit = self._origin(state)
         expected = origin + unit * state.network(x[None])
-        ready = (state.known >= m) & (state.heard > n) & (state.quiet >= self.warm)
+        ready = (state.known >= m) & (state.received > n) & (state.quiet >= self.warm)
         nothing = jnp.zeros_like(sample.value)
         residual = Residual(
             time=sample.time,
@@ -112,8 +112,8 @@ class OnlineNetwork(eqx.Module):
         measured, filled = picked(trust.measured, self.columns), picked(trust.filled, self.columns)
         d = len(self.columns)
         # Of an output that is not there the others must still know something: what was foretold, within its range.
-        foretold = jnp.clip(expected, self.center[:d] - self.half[:d], self.center[:d] + self.half[:d])
-        y = jnp.where(measured | filled, picked(trust.value, self.columns), foretold)
+        predicted = jnp.clip(expected, self.center[:d] - self.half[:d], self.center[:d] + self.half[:d])
+        y = jnp.where(measured | filled, picked(trust.value, self.columns), predicted)
         target, teaches = self.lesson(pending, trust)
         _, unit = self._origin(state)
         network = taught(state.network, x, target, teaches, self.tolerance / unit, self.rate, self.iterations)
@@ -124,7 +124,7 @@ class OnlineNetwork(eqx.Module):
             outputs=jnp.concatenate([y[None], state.outputs[:-1]]),
             inputs=inputs[:n],
             known=jnp.where(measured | filled, jnp.minimum(state.known + 1, m), 0.0),
-            heard=state.heard,
+            received=state.received,
             clean=jnp.where(measured.all(), jnp.minimum(state.clean + 1, m), 0.0),
             quiet=jnp.where((state.quiet < self.warm) & teaches.any(), quiet, state.quiet),
             time=now,
@@ -137,7 +137,7 @@ class OnlineNetwork(eqx.Module):
         origin, unit = self._origin(state)
         unjudged = state.quiet < self.warm
         allowed = picked(trust.learn, self.columns) | (unjudged & picked(trust.measured, self.columns))
-        whole = (state.clean >= m) & (state.heard > n)
+        whole = (state.clean >= m) & (state.received > n)
         return (picked(trust.value, self.columns) - origin) / unit, allowed & whole
 
     def _seen(self, outputs: Float[Array, "m D"], inputs: Float[Array, "p U"]) -> Float[Array, " N"]:

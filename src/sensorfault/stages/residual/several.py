@@ -29,17 +29,17 @@ class Several(eqx.Module):
         return tuple(part.init() for part in self.parts)
 
     def evaluate(self, state: tuple[Any, ...], sample: Sample) -> tuple[Residual, _Work]:
-        told, pending = [], []
+        result, pending = [], []
         for part, before in zip(self.parts, state, strict=True):
             residual, work = part.evaluate(before, sample)
             valid = residual.valid & sample.fresh & jnp.isfinite(residual.value)
-            told.append(residual._replace(valid=valid))
+            result.append(residual._replace(valid=valid))
             pending.append(work)
         nothing = jnp.zeros_like(sample.value)
         value, noise, expected = nothing, nothing, sample.value
         cov = jnp.zeros((nothing.size, nothing.size))
         valid = jnp.zeros(nothing.shape, bool)
-        for residual, mine in zip(told, self.answers, strict=True):
+        for residual, mine in zip(result, self.answers, strict=True):
             value = jnp.where(mine, residual.value, value)
             noise = jnp.where(mine, residual.noise, noise)
             expected = jnp.where(mine, residual.expected, expected)
@@ -54,7 +54,7 @@ class Several(eqx.Module):
             noise=noise,
             valid=valid,
             born=sample.born,
-            extra=tuple(told),
+            extra=tuple(result),
         )
         return together, _Work(state, tuple(pending))
 

@@ -21,7 +21,7 @@ class Aside(NamedTuple):
 
 class _State(NamedTuple):
     speed: Float[Array, ""]  # the last trusted one [m/s]
-    heard: Float[Array, ""]  # when that was [s]
+    received: Float[Array, ""]  # when that was [s]
 
 
 class _Work(NamedTuple):
@@ -51,11 +51,11 @@ class SideForce(eqx.Module):
 
     def evaluate(self, state: _State, sample: Sample) -> tuple[Residual, _Work]:
         first, second = self.velocity
-        told = sample.value[first], sample.value[second]
-        speed = jnp.abs(told[0]) if self.polar else jnp.hypot(*told)
+        result = sample.value[first], sample.value[second]
+        speed = jnp.abs(result[0]) if self.polar else jnp.hypot(*result)
         new = sample.fresh[first] & (self.polar | sample.fresh[second])
-        force, rate, there = self.unit.told(sample)
-        age = sample.time - state.heard
+        force, rate, there = self.unit.force_and_turn(sample)
+        age = sample.time - state.received
         ready = there & (age >= 0) & (age <= self.stale_s) & (state.speed >= SLOWEST)
         # e = a_left - k v ω
         e = jnp.where(ready, force - self.gain * state.speed * rate, 0.0)
@@ -76,4 +76,4 @@ class SideForce(eqx.Module):
     def update(self, work: _Work, trust: Trust) -> _State:
         first, second = self.velocity
         taken = work.new & trust.measured[first] & (self.polar | trust.measured[second])
-        return _State(jnp.where(taken, work.speed, work.state.speed), jnp.where(taken, work.time, work.state.heard))
+        return _State(jnp.where(taken, work.speed, work.state.speed), jnp.where(taken, work.time, work.state.received))

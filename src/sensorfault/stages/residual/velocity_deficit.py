@@ -24,9 +24,9 @@ class Slip(NamedTuple):
 
 class _State(NamedTuple):
     time: Float[Array, ""]
-    heard: Float[Array, ""]  # the last new velocity [s]
+    received: Float[Array, ""]  # the last new velocity [s]
     believed: Float[Array, ""]  # the last trusted one [s]
-    told: Float[Array, "2"]  # ... and what it was, east and north [m/s]
+    result: Float[Array, "2"]  # ... and what it was, east and north [m/s]
     stuck: Float[Array, ""]  # for how long it has repeated itself to the last bit [s]
     slow: Float[Array, ""]  # when the unit was last led [s]
     rates: Float[Array, "2"]  # as late as the receiver is
@@ -35,12 +35,12 @@ class _State(NamedTuple):
 
 class _Work(NamedTuple):
     state: _State  # carried on to now
-    told: Float[Array, "2"]
+    result: Float[Array, "2"]
     new: Bool[Array, ""]
     rates: Float[Array, "2"]  # with this sample's word of the inertial unit
     fresh: Bool[Array, " C"]
     repeated: Bool[Array, ""]  # the velocity is to the last bit what it was
-    freed: Bool[Array, ""]  # ... and was so for long, and is no more
+    baarda_w: Bool[Array, ""]  # ... and was so for long, and is no more
 
 
 class VelocityDeficit(eqx.Module):
@@ -67,41 +67,41 @@ class VelocityDeficit(eqx.Module):
     def evaluate(self, state: _State, sample: Sample) -> tuple[Residual, _Work]:
         first, second = self.velocity
         new = sample.fresh[first] & sample.fresh[second]
-        told = ground_velocity(sample.value[first], sample.value[second], self.polar)
+        result = ground_velocity(sample.value[first], sample.value[second], self.polar)
         dt = jnp.clip(sample.time - state.time, 0.0, HOLD_S)
         rates, there = self.inertial.rates(sample)
         lagging = rates + (state.rates - rates) * self.inertial.decay(dt)
         # by the rates of the sample before, which have been judged
         by_unit = turned(state.velocity, state.rates[0] * dt, state.rates[1] * dt)
-        broken = ~there | (sample.time - state.heard > HOLD_S) | (sample.time < state.time)
+        broken = ~there | (sample.time - state.received > HOLD_S) | (sample.time < state.time)
         slow = jnp.where(broken, sample.time, state.slow)
 
         speed = jnp.linalg.norm(by_unit)
         east, north = by_unit / jnp.maximum(speed, 0.1)
-        off = told - by_unit
+        off = result - by_unit
         slip = jnp.stack([off[0] * east + off[1] * north, off[0] * north - off[1] * east])
-        repeated = (told == state.told).all() & (jnp.linalg.norm(told) > STANDING)
-        freed = new & ~repeated & (state.stuck > HOLD_S)
-        ready = new & ~broken & ~freed & (sample.time - slow >= self.memory_s / 4) & (speed >= SLOWEST)
-        heard = jnp.where(new, sample.time, state.heard)
-        carried = state._replace(time=sample.time, heard=heard, slow=slow, velocity=by_unit)
-        work = _Work(carried, told, new, lagging, sample.fresh, repeated, freed)
+        repeated = (result == state.result).all() & (jnp.linalg.norm(result) > STANDING)
+        baarda_w = new & ~repeated & (state.stuck > HOLD_S)
+        ready = new & ~broken & ~baarda_w & (sample.time - slow >= self.memory_s / 4) & (speed >= SLOWEST)
+        received = jnp.where(new, sample.time, state.received)
+        carried = state._replace(time=sample.time, received=received, slow=slow, velocity=by_unit)
+        work = _Work(carried, result, new, lagging, sample.fresh, repeated, baarda_w)
         return self._residual(sample, by_unit, Slip(jnp.where(ready, slip, 0.0), ready)), work
 
     def update(self, work: _Work, trust: Trust) -> _State:
-        state, told = work.state, work.told
+        state, result = work.state, work.result
         believed = work.new & jnp.stack([trust.measured[i] for i in self.velocity]).all()
         since = state.time - state.believed
         lost = work.new & (since > self.afresh_s)
         unit = self.inertial.trusted(trust, work.fresh)
-        led = lost | (believed & (work.freed | ~unit | (jnp.linalg.norm(told) < SLOWEST)))
+        led = lost | (believed & (work.baarda_w | ~unit | (jnp.linalg.norm(result) < SLOWEST)))
         # v <- v + (1 - exp(-dt / T)) (told - v)
         gain = jnp.where(led, 1.0, jnp.where(believed, 1 - jnp.exp(-jnp.clip(since, 0.0, HOLD_S) / self.memory_s), 0.0))
         return state._replace(
             rates=jnp.where(unit, work.rates, state.rates),
-            velocity=state.velocity + gain * (told - state.velocity),
+            velocity=state.velocity + gain * (result - state.velocity),
             believed=jnp.where(believed | lost, state.time, state.believed),
-            told=jnp.where(believed, told, state.told),
+            result=jnp.where(believed, result, state.result),
             stuck=jnp.where(
                 believed, jnp.where(work.repeated, state.stuck + jnp.clip(since, 0.0, HOLD_S), 0.0), state.stuck
             ),

@@ -64,7 +64,7 @@ class Agreement(eqx.Module):
         state, height, there = self._heard(state, residual)
         i, j = self._sides()
         lead = fresh[self.columns[0]]
-        memory = state.memory.heard(there[i] & there[j] & lead, height[i] - height[j])
+        memory = state.memory.received(there[i] & there[j] & lead, height[i] - height[j])
         memory = memory.beaten(lead & (now - memory.began >= (1 - EARLY) * self.beat_s), now)
         gap, known = memory.gaps()
         covers = self._covers()
@@ -139,10 +139,10 @@ class Agreement(eqx.Module):
         memory = state.memory.forgotten(broken[i] | broken[j] | hole)
         memory = memory._replace(began=jnp.where(hole, now, memory.began))
         spoken = jnp.where(fresh, now, state.spoken)
-        heard = _State(climbed, jnp.where(fresh, speed, state.speed), spoken, memory, state.excused)
+        received = _State(climbed, jnp.where(fresh, speed, state.speed), spoken, memory, state.excused)
         late = jnp.clip(now - spoken, 0.0, self.gap_s)
-        height = jnp.where(speaks, climbed + heard.speed * late, value)
-        return heard, height, jnp.where(speaks, now - spoken <= self.gap_s, present)
+        height = jnp.where(speaks, climbed + received.speed * late, value)
+        return received, height, jnp.where(speaks, now - spoken <= self.gap_s, present)
 
 
 def named(over: Bool[Array, " P"], covers: Bool[Array, "P C"], owner: tuple[int, ...]) -> Bool[Array, " C"]:

@@ -9,7 +9,7 @@ from sensorfault.stages.statistic.information import Information
 from sensorfault.stages.statistic.per_channel import each
 
 
-class AveragedFreed(eqx.Module):
+class AveragedBaardaW(eqx.Module):
     """|(V⁻¹z̄)_i| / √(V⁻¹)_ii with V⁻¹ = ΣS⁻¹ and V⁻¹z̄ = ΣS⁻¹z over the last `window_s`: the w-test of the average.
 
     One test a channel, standard normal in absolute value where innovations are white, from its first sample on. Of one

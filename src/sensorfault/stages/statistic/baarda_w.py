@@ -4,11 +4,11 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from sensorfault.core.types import Residual, Score, Trust
-from sensorfault.numerics.gaussian import freed
+from sensorfault.numerics.gaussian import baarda_w
 from sensorfault.stages.statistic.per_channel import each
 
 
-class Freed(eqx.Module):
+class BaardaW(eqx.Module):
     """|w_i| = |(S⁻¹z)_i| / √(S⁻¹)_ii: one test a channel, standard normal in absolute value. Baarda's w-test (1968).
 
     S is `residual.cov` of the valid channels, whatever their number; the others are marginalised out. In the bank of
@@ -19,7 +19,7 @@ class Freed(eqx.Module):
         return ()
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
-        own = freed(residual.value, residual.cov, residual.valid)
+        own = baarda_w(residual.value, residual.cov, residual.valid)
         return each(own.largest * jnp.sqrt(own.taken), residual.valid), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:

@@ -16,11 +16,11 @@ class Deficit(eqx.Module):
         return ()
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
-        told = residual.extra
+        result = residual.extra
         there = ~(self.accused & jnp.asarray(residual.out)).any()
-        covers = jnp.broadcast_to(self.accused[None], (*told.ready.shape, len(self.accused)))
-        value = jnp.linalg.norm(told.deficit, axis=1) / told.sigma
-        return Score(value, told.ready & there, covers, covers.astype(value.dtype)), ()
+        covers = jnp.broadcast_to(self.accused[None], (*result.ready.shape, len(self.accused)))
+        value = jnp.linalg.norm(result.deficit, axis=1) / result.sigma
+        return Score(value, result.ready & there, covers, covers.astype(value.dtype)), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:
         return ()

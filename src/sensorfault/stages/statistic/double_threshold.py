@@ -32,9 +32,9 @@ class DoubleThreshold(eqx.Module):
         own = jnp.eye(self.channels)
         now = residual.value / jnp.sqrt((own * residual.cov).sum(axis=1))
         seen = shifted(jnp.where(residual.born[None], 0.0, last), now)
-        foretold = self.network(seen[:, None, :])[0]
+        predicted = self.network(seen[:, None, :])[0]
         size = jnp.abs(now)
-        score = jnp.maximum(size / self.high, jnp.minimum(size / self.low, foretold / self.wrong))
+        score = jnp.maximum(size / self.high, jnp.minimum(size / self.low, predicted / self.wrong))
         return each(score, residual.valid), jnp.where(residual.valid[None], seen, last)
 
     def update(self, pending: Float[Array, "s C"], trust: Trust) -> Float[Array, "s C"]:

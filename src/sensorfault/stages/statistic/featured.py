@@ -24,9 +24,9 @@ def featured(
     value = jnp.where(residual.valid, residual.value, 0.0)
     variance = (own * residual.cov).sum(axis=1)
     seen = features(value, variance, residual.noise)
-    told, valid = jnp.zeros_like(value), jnp.zeros_like(residual.valid)
+    result, valid = jnp.zeros_like(value), jnp.zeros_like(residual.valid)
     for model, column, most in zip(models, columns, widest, strict=True):
         mine = own[column] > 0
-        told = jnp.where(mine, model(seen[column]), told)
+        result = jnp.where(mine, model(seen[column]), result)
         valid = valid | (mine & (variance[column] <= most))
-    return each(told, residual.valid & valid)
+    return each(result, residual.valid & valid)

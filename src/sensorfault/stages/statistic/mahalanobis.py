@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from sensorfault.core.types import Residual, Score, Trust
-from sensorfault.numerics.gaussian import freed
+from sensorfault.numerics.gaussian import baarda_w
 
 
 class Mahalanobis(eqx.Module):
@@ -22,7 +22,7 @@ class Mahalanobis(eqx.Module):
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
         valid = residual.valid
-        own = freed(residual.value, residual.cov, valid)
+        own = baarda_w(residual.value, residual.cov, valid)
         square = own.taken.max() if self.single else own.total
         score = Score(
             value=own.largest * jnp.sqrt(square)[None],

@@ -7,7 +7,7 @@ from sensorfault.core.types import Residual, Score, Trust
 from sensorfault.stages.statistic.per_channel import each
 
 
-class Late(eqx.Module):
+class OneSided(eqx.Module):
     """r_i / √S_ii, signed: one test a channel, one-sided.
 
     For pseudoranges in a town: a signal that came by a detour is too long, never too short. Where most signals do, the

@@ -9,7 +9,7 @@ from sensorfault.core.stage import Stage
 from sensorfault.core.types import Residual, Score, Trust
 
 
-class Of(eqx.Module):
+class SelectResidual(eqx.Module):
     """`statistic` applied to the residual of part `part` of residual/several.py."""
 
     statistic: Stage[Any, Residual, Score, Any]

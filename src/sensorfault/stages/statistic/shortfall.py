@@ -35,19 +35,19 @@ class Shortfall(eqx.Module):
         return _Raw(jnp.asarray(NEVER, float), Trail.empty(self.slots))
 
     def evaluate(self, state: _Raw, residual: Residual) -> tuple[Score, _Raw]:
-        told = residual.extra
+        result = residual.extra
         dt = jnp.clip(residual.time - state.time, 0.0, 2 * self.horizon_s)
-        trail = state.trail.kept(told.known).carried(dt, jnp.zeros(2), told.length)
+        trail = state.trail.kept(result.known).carried(dt, jnp.zeros(2), result.length)
         since = trail.pick(trail.newest(self.horizon_s))
         latitude, longitude = (residual.measured[i] for i in self.position)
         gone = jnp.linalg.norm(east_north(latitude, longitude, since.latitude, since.longitude))
         covers = self.accused[None]
-        there = told.fix & since.there & ~(self.accused & jnp.asarray(residual.out)).any()
+        there = result.fix & since.there & ~(self.accused & jnp.asarray(residual.out)).any()
         # times = 2: by how much more than half of the way is missing
         missing = jnp.maximum(since.path - self.times * gone, 0.0)
         score = Score(missing[None], there[None], covers, covers.astype(gone.dtype))
         spacing = self.horizon_s / (self.slots - 2)
-        return score, _Raw(residual.time, trail.put(told.fix, latitude, longitude, jnp.zeros(2), spacing))
+        return score, _Raw(residual.time, trail.put(result.fix, latitude, longitude, jnp.zeros(2), spacing))
 
     def update(self, pending: _Raw, trust: Trust) -> _Raw:
         return pending

@@ -18,10 +18,10 @@ class Slippage(eqx.Module):
         return ()
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
-        told = residual.extra
+        result = residual.extra
         covers = jnp.stack([self.along, self.across])
-        there = told.ready & ~(covers & jnp.asarray(residual.out)[..., None, :]).any()
-        value = jnp.abs(told.slip) / self.sigma
+        there = result.ready & ~(covers & jnp.asarray(residual.out)[..., None, :]).any()
+        value = jnp.abs(result.slip) / self.sigma
         return Score(value, jnp.stack([there, there]), covers, covers.astype(value.dtype)), ()
 
     def update(self, pending: tuple[()], trust: Trust) -> tuple[()]:

@@ -15,7 +15,7 @@ class _Stood(NamedTuple):
     path: Float[Array, ""]  # [m]
 
 
-class Standing(eqx.Module):
+class StuckPosition(eqx.Module):
     """Way along the path [m] over which new fixes have repeated one position to the last bit.
 
     A parked car repeats itself as long as it likes; a moving one does so for no longer than its receiver's resolution.
@@ -28,15 +28,17 @@ class Standing(eqx.Module):
         return _Stood(jnp.zeros(2), jnp.zeros((), bool), jnp.zeros(()))
 
     def evaluate(self, state: _Stood, residual: Residual) -> tuple[Score, _Stood]:
-        told = residual.extra
+        result = residual.extra
         place = jnp.stack([residual.measured[i] for i in self.position])
-        path = jnp.where(told.known, state.path + told.length, 0.0)
+        path = jnp.where(result.known, state.path + result.length, 0.0)
         same = state.known & (place == state.place).all()
-        there = told.fix & ~(self.accused & jnp.asarray(residual.out)).any()
+        there = result.fix & ~(self.accused & jnp.asarray(residual.out)).any()
         covers = self.accused[None]
         score = Score(jnp.where(same, path, 0.0)[None], there[None], covers, covers.astype(path.dtype))
         after = _Stood(
-            jnp.where(told.fix, place, state.place), state.known | told.fix, jnp.where(told.fix & ~same, 0.0, path)
+            jnp.where(result.fix, place, state.place),
+            state.known | result.fix,
+            jnp.where(result.fix & ~same, 0.0, path),
         )
         return score, after
 

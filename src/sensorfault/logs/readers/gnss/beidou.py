@@ -149,12 +149,12 @@ class BeidouSubframes:
         for number, end in self.message.ends.items():
             size = end - self.message.start
             row = row << size | parts[number] >> (_BITS - end) & (1 << size) - 1
-        told = {name: field.of({0: row}, self.message.bits) for name, field in self.message.fields.items()}
-        if told.pop("health"):
+        result = {name: field.of({0: row}, self.message.bits) for name, field in self.message.fields.items()}
+        if result.pop("health"):
             return None
-        told["group_delay"] *= 1e-10
-        told["toe"], told["toc"] = (nearest(told[name], time) + LATE_S for name in ("toe_of_week", "toc"))
-        return Ephemeris(**told, mu=EARTH_MU["C"], earth_rate=EARTH_RATE["C"], tilt=_TILT if self.paged else 0.0)
+        result["group_delay"] *= 1e-10
+        result["toe"], result["toc"] = (nearest(result[name], time) + LATE_S for name in ("toe_of_week", "toc"))
+        return Ephemeris(**result, mu=EARTH_MU["C"], earth_rate=EARTH_RATE["C"], tilt=_TILT if self.paged else 0.0)
 
 
 def tilt(satellite: str) -> float:

@@ -22,14 +22,14 @@ def broadcast_beside(path: Path, time: float) -> tuple[Broadcast | None, list[st
         if file == path or not file.is_file() or not _is_nav(file):
             continue
         try:
-            told = read_nav(file)
+            result = read_nav(file)
         except LogError as error:
             notes.append(f"{path.name}: a navigation file beside it is of no use: {error}")
             continue
-        if np.abs(told.times - time).min() < _REACH_S:
-            found = found.with_more(told)
+        if np.abs(result.times - time).min() < _REACH_S:
+            found = found.with_more(result)
             used.append(file.name)
-            notes += [one.sentence(file) for one in told.damage]
+            notes += [one.sentence(file) for one in result.damage]
     if not used:
         return None, [*notes, f"{path.name}: {NONE}"]
     notes.append(f"{path.name}: the satellites' places are from {' and '.join(used)}.")

@@ -28,17 +28,17 @@ def fixes(path: Path, solutions: list[bytes]) -> Source:
     """Messages NAV-PVT as a table on Unix time; without a fix there are no values. Altitude is above the ellipsoid."""
     rows: list[list[float]] = []
     for payload in solutions:
-        told = _PVT.unpack_from(payload)
+        result = _PVT.unpack_from(payload)
         try:
-            year, month, day, hour, minute = told[1:6]
-            time = datetime(year, month, day, hour, minute, tzinfo=UTC).timestamp() + told[6] + 1e-9 * told[9]
+            year, month, day, hour, minute = result[1:6]
+            time = datetime(year, month, day, hour, minute, tzinfo=UTC).timestamp() + result[6] + 1e-9 * result[9]
         except ValueError:
             time = float("nan")
-        if told[7] & _VALID_TIME != _VALID_TIME:
+        if result[7] & _VALID_TIME != _VALID_TIME:
             time = float("nan")
-        lon, lat, height, north, east, down, speed, course = (told[i] for i in (14, 15, 16, 20, 21, 22, 23, 24))
+        lon, lat, height, north, east, down, speed, course = (result[i] for i in (14, 15, 16, 20, 21, 22, 23, 24))
         place = [1e-7 * lat, 1e-7 * lon, *(1e-3 * mm for mm in (height, north, east, down, speed)), 1e-5 * course]
-        rows.append([time, *(place if told[11] & 1 else [float("nan")] * len(place))])
+        rows.append([time, *(place if result[11] & 1 else [float("nan")] * len(place))])
     return gnss_table(path, dict(zip(("time", *_UNITS), np.array(rows).T, strict=True)))
 
 

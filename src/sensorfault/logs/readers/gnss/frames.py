@@ -24,7 +24,7 @@ def frames(path: Path, lost: list[Damage], tell: Callable[[float], None]) -> Ite
     if not path.stat().st_size:
         return
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as stream:
-        size, told = len(stream), 0
+        size, result = len(stream), 0
         broken: list[int] = []
         at = stream.find(_SYNC)
         while at >= 0:
@@ -35,8 +35,8 @@ def frames(path: Path, lost: list[Damage], tell: Callable[[float], None]) -> Ite
             else:
                 broken.append(at)
                 at = stream.find(_SYNC, at + 1)
-            if at - told > _TELL_EVERY:
-                told = at
+            if at - result > _TELL_EVERY:
+                result = at
                 tell(at / size)
         if broken:
             what = "a message is damaged or cut off"

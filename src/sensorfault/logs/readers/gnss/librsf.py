@@ -14,7 +14,7 @@ import polars as pl
 from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.readers.gnss.observed import TIME, observed
 from sensorfault.logs.readers.gnss.rinex import lines_of
-from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
 from sensorfault.logs.table import LogError
 
 _SYSTEMS = {1: "G", 2: "S", 4: "R", 8: "E", 16: "J", 32: "C"}
@@ -61,7 +61,7 @@ def read_librsf(path: Path, ask: Ask) -> Tables:
     left = ", ".join(f"{word} ({count})" for word, count in others.items() if word)
     notes = [f"{path.name}: lines of another kind were left out: {left}."] if left else []
     tables = {word: _ranges(path, each) if word == _RANGES else _plain(path, word, each) for word, each in rows.items()}
-    return told({word: table for word, table in tables.items() if ask.wants(word)}, notes, damage)
+    return with_notes({word: table for word, table in tables.items() if ask.wants(word)}, notes, damage)
 
 
 def _plain(path: Path, word: str, rows: list[list[float]]) -> Source:

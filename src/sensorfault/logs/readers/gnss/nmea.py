@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sensorfault.logs.readers.gnss.fixes import gnss_table
-from sensorfault.logs.readers.source import Ask, Damage, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.table import LogError
 from sensorfault.logs.units import KNOT
 
@@ -60,7 +60,7 @@ def read_nmea(path: Path, ask: Ask) -> Tables:
     times = [moment for moment in rows if not dated or moment > _DAY_S]
     table = {name: np.array([rows[moment].get(name, np.nan) for moment in times]) for name in _NAMES}
     notes = () if dated else (f"{path.name}: no sentence RMC tells the date; the time counts from midnight.",)
-    return told({"": gnss_table(path, {"time": np.array(times), **table})}, notes, damage)
+    return with_notes({"": gnss_table(path, {"time": np.array(times), **table})}, notes, damage)
 
 
 def _values(message: Any) -> dict[str, float]:
@@ -68,12 +68,12 @@ def _values(message: Any) -> dict[str, float]:
     if message.msgID == "RMC":
         if message.status != "A":
             return {}
-        told = {"latitude": message.lat, "longitude": message.lon, "speed": message.spd, "course": message.cog}
+        result = {"latitude": message.lat, "longitude": message.lon, "speed": message.spd, "course": message.cog}
     elif not message.quality:
         return {}
     else:
-        told = {"latitude": message.lat, "longitude": message.lon, "altitude": message.alt}
-    numbers = {name: float(value) for name, value in told.items() if value != ""}
+        result = {"latitude": message.lat, "longitude": message.lon, "altitude": message.alt}
+    numbers = {name: float(value) for name, value in result.items() if value != ""}
     if "speed" in numbers:
         numbers["speed"] *= KNOT
     return numbers

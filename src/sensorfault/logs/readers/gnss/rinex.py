@@ -67,12 +67,12 @@ def read_header(path: Path, lines: list[str]) -> Header:
         label, text = line[_LABEL:].strip(), line[:_LABEL]
         try:
             if label == "END OF HEADER":
-                told = np.concatenate((alpha, beta))
+                result = np.concatenate((alpha, beta))
                 return replace(
                     header,
                     lines=number,
                     codes={name: tuple(each) for name, each in codes.items()},
-                    klobuchar=told if told.any() else None,
+                    klobuchar=result if result.any() else None,
                 )
             if label == "ION ALPHA":
                 alpha = _four(text, 2)

@@ -13,7 +13,7 @@ from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.gnss.fixes import gnss_table
 from sensorfault.logs.readers.gnss.observed import name_of, observed
 from sensorfault.logs.readers.gps_time import unix_from_gps_week
-from sensorfault.logs.readers.source import Ask, Source, Tables, told
+from sensorfault.logs.readers.source import Ask, Source, Tables, with_notes
 from sensorfault.logs.table import LogError
 from sensorfault.numerics.gnss.constants import WEEK_S
 
@@ -54,7 +54,7 @@ def read_smartloc(path: Path, ask: Ask) -> Tables:
         zero = unix_from_gps_week(0, float(epochs[0]))
         truth = {name: _column(source, mark)[first] for name, mark in _TRUTH.items()}
         tables[TRUTH] = gnss_table(path, {"time": zero + (epochs - epochs[0]), **truth})
-    return told(tables, source.notes, source.damage)
+    return with_notes(tables, source.notes, source.damage)
 
 
 def _called(source: Source, mark: str) -> str:

@@ -72,10 +72,10 @@ def read_orbits(path: Path) -> Orbits:
     if not names:
         raise LogError(f"{path}: the SP3 file holds no positions; download it again.")
     empty = [np.nan] * 4
-    told = np.array([[row.get(name, empty) for name in names] for row in rows])
-    told[(told[..., :3] == 0).all(axis=-1)] = np.nan
-    clock = np.where(np.abs(told[..., 3]) < _NO_CLOCK, told[..., 3] * 1e-6, np.nan)
-    return Orbits(np.array(times), names, told[..., :3] * 1e3, clock, tuple(damage))
+    result = np.array([[row.get(name, empty) for name in names] for row in rows])
+    result[(result[..., :3] == 0).all(axis=-1)] = np.nan
+    clock = np.where(np.abs(result[..., 3]) < _NO_CLOCK, result[..., 3] * 1e-6, np.nan)
+    return Orbits(np.array(times), names, result[..., :3] * 1e3, clock, tuple(damage))
 
 
 def looks_sp3(head: bytes) -> bool:

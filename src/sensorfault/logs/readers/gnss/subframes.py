@@ -119,10 +119,10 @@ class Subframes:
             return None
         if health.of(self.parts, length):
             return None
-        told = {name: field.of(self.parts, length) for name, field in fields.items()}
+        result = {name: field.of(self.parts, length) for name, field in fields.items()}
         if self.system == "E":
-            told["toe_of_week"], told["toc"] = 60 * told["toe_of_week"], 60 * told["toc"]
-        told["toe"], told["toc"] = (nearest(told[name], time) for name in ("toe_of_week", "toc"))
+            result["toe_of_week"], result["toc"] = 60 * result["toe_of_week"], 60 * result["toc"]
+        result["toe"], result["toc"] = (nearest(result[name], time) for name in ("toe_of_week", "toc"))
         for part in issues:  # the next one is made of what comes from now on
             del self.parts[part.part]
-        return Ephemeris(**told, mu=EARTH_MU[self.system], earth_rate=EARTH_RATE[self.system], tilt=0.0)
+        return Ephemeris(**result, mu=EARTH_MU[self.system], earth_rate=EARTH_RATE[self.system], tilt=0.0)

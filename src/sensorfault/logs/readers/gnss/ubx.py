@@ -14,7 +14,7 @@ from sensorfault.logs.readers.gnss.frames import frames
 from sensorfault.logs.readers.gnss.ranges import with_satellites
 from sensorfault.logs.readers.gnss.ubx_broadcast import broadcast_in
 from sensorfault.logs.readers.gnss.ubx_raw import measured
-from sensorfault.logs.readers.source import Ask, Damage, Tables, told
+from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.table import LogError
 
 _RAWX, _SFRBX, _PVT = 0x0215, 0x0213, 0x0107
@@ -50,4 +50,4 @@ def read_ubx(path: Path, ask: Ask) -> Tables:
         tables[FIXES] = fixes(path, solutions)
     if not tables and not (raw or solutions):
         raise LogError(f"{path}: no raw measurement (RXM-RAWX) and no fix (NAV-PVT) in it that can be read; log them.")
-    return told(tables, (), lost)
+    return with_notes(tables, (), lost)

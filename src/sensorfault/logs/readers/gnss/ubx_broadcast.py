@@ -40,7 +40,8 @@ def broadcast_in(subframes: list[tuple[int, bytes]], seen: Observed) -> Broadcas
             # BeiDou tells the delay of B1I against B3I, by which its clocks are
             orbits[name].setdefault(found.toe, found._replace(group_delay=0.0) if system in seen.frequency else found)
     klobuchar = next(
-        (told for one in gather.values() if isinstance(one, Subframes) and (told := one.klobuchar()) is not None), None
+        (result for one in gather.values() if isinstance(one, Subframes) and (result := one.klobuchar()) is not None),
+        None,
     )
     return gathered(
         {name: list(each.values()) for name, each in orbits.items()},

@@ -36,8 +36,8 @@ def measured(raw: list[bytes]) -> Observed:
     chosen = np.zeros(len(every), bool)
     frequency = {}
     for system in SYSTEMS:
-        heard, second = _heard(every, system)
-        chosen |= heard
+        received, second = _heard(every, system)
+        chosen |= received
         if second:
             frequency[SYSTEMS[system]] = B3I_HZ
     every, at = every[chosen], at[chosen]
@@ -71,4 +71,6 @@ def _heard(every: np.ndarray, system: int) -> tuple[Bool[np.ndarray, " N"], bool
     """Which sound measurements are of a system's first band that was heard at all, and whether that is its second."""
     sound = (every["status"] & 1 == 1) & (every["satellite"] != _NO_NUMBER) & (every["system"] == system)
     of_bands = [sound & np.isin(every["signal"], band) for band in _BANDS[SYSTEMS[system]]]
-    return next(((heard, band > 0) for band, heard in enumerate(of_bands) if heard.any()), (of_bands[0], False))
+    return next(
+        ((received, band > 0) for band, received in enumerate(of_bands) if received.any()), (of_bands[0], False)
+    )
