@@ -22,17 +22,21 @@ from sensorfault.stages.threshold.fixed import Fixed
 
 def uncalibrated(monitor: Monitor) -> Monitor:
     """The monitor with all its limits off."""
-    off = [Fixed(jnp.full(shape.shape, jnp.inf)) for shape in jax.eval_shape(_scores, monitor)]
+    off = [Fixed(jnp.full(score.shape, jnp.inf)) for score in jax.eval_shape(_scores, monitor)]
     made: Monitor = eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, off)
     return made
 
 
 def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
-    """The scores of an empty sample."""
+    """The scores of an empty sample: the statistics alone, not the loop around them."""
     channels = len(monitor.owner)
     none = jnp.zeros(channels, bool)
     sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none)
-    return [score.value for score in monitor.step(monitor.init(), sample)[1].scores]
+    state = monitor.init()
+    residual, _ = monitor.residual.evaluate(state.residual, sample)
+    residual = residual._replace(out=none)
+    pairs = zip(monitor.branches, state.branches, strict=True)
+    return [branch.statistic.evaluate(memory, residual)[0].value for branch, (memory, _) in pairs]
 
 
 def open_loop_scores(uncalibrated: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:

@@ -1,10 +1,11 @@
 """The command line: one verb a file. Nothing slow is imported before a verb runs."""
 
+import os
 import sys
 
 import click
 
-from sensorfault.cli import demo, detect, evaluate, fit, info, init, inject, methods, report, reproduce
+from sensorfault.cli import cache, demo, detect, evaluate, fit, info, init, inject, methods, report, reproduce
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -18,7 +19,7 @@ def cli() -> None:
     """
 
 
-for verb in (demo, init, info, fit, detect, inject, evaluate, report, methods, reproduce):
+for verb in (demo, init, info, fit, detect, inject, evaluate, report, methods, reproduce, cache):
     cli.add_command(verb.command)
 
 
@@ -26,6 +27,7 @@ def main() -> None:
     """Run the command line: bad input is one sentence on stderr and exit code 2."""
     from sensorfault.cli.errors import sentence_of
 
+    os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # XLA's own messages are no news to a user
     try:
         cli(standalone_mode=False)
     except click.exceptions.Exit as done:

@@ -59,21 +59,22 @@ def _keep(report: Report) -> Replayed:
 @jax.jit
 def _chunk(
     monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"]
-) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]]]:
-    """What is kept of each row, packed; rows beyond the log's end (`real` False) leave the state alone."""
+) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]], Replayed]:
+    """What is kept of each row, packed, and the shapes to unpack it by, as arrays of no rows.
+
+    Rows beyond the log's end (`real` False) leave the state alone.
+    """
+    shapes: list[Replayed] = []
 
     def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, tuple[Array, Array]]:
         sample, real = row
         after, report = monitor.step(state, sample)
         kept: MonitorState = jax.tree.map(lambda new, old: jnp.where(real, new, old), after, state)
+        shapes.append(jax.tree.map(jax.typeof, _keep(report)))
         return kept, pack(_keep(report))
 
     done: tuple[MonitorState, tuple[Array, Array]] = lax.scan(one, state, (rows, real))
-    return done
-
-
-def _told(monitor: Monitor, state: MonitorState, sample: Sample) -> Replayed:
-    return _keep(monitor.step(state, sample)[1])
+    return (*done, jax.tree.map(lambda x: jnp.zeros((0, *x.shape), x.dtype), shapes[-1]))
 
 
 def _strong(tree: tuple[Monitor, MonitorState]) -> tuple[Monitor, MonitorState]:
@@ -109,9 +110,9 @@ def replay_on(
         real = np.arange(start, start + long) < total
         block = jax.tree.map(lambda array, rows=rows: array[rows], log.block)
         chunk = samples(log.time[rows], log.value[rows], log.fresh[rows], block)
-        state, kept = _chunk(monitor, state, chunk, jnp.asarray(real))
+        state, kept, none = _chunk(monitor, state, chunk, jnp.asarray(real))
         result.append([np.asarray(part) for part in kept])
         if progress:
             progress(min(1.0, (start + long) / total))
-    example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
+    example: Replayed = jax.tree.map(lambda x: np.empty(x.shape[1:], x.dtype), none)
     return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*result, strict=True)))
