@@ -38,7 +38,7 @@ def command(
     """
     from sensorfault.core.extras import require
 
-    require("a report page", "plotly")
+    require("`sensorfault report`", "polars", "plotly")
     from sensorfault.report.page import write_page
 
     work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
