@@ -12,10 +12,10 @@ from logs import written_bus
 from logs.written_ros import bag1, bag2
 from sensorfault.logs import Log, LogError, guess, read, write
 from sensorfault.logs.parts import is_long_log, read_parts
-from sensorfault.logs.read import GUESSED
 from sensorfault.logs.readers import beginning, can_bus, csv, mdf, mdf_load, parquet, topics
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.subprocess_reader import Loaded
+from sensorfault.logs.reading import GUESSED
 
 
 @pytest.fixture(autouse=True)

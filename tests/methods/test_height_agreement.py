@@ -13,7 +13,7 @@ from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
-from sensorfault.logs.guess.vehicle import guess
+from sensorfault.logs import guess
 from sensorfault.logs.read import read
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.methods.height.height_agreement import build

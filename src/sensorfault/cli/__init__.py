@@ -37,8 +37,9 @@ def main() -> None:
     except click.ClickException as error:
         click.echo(f"sensorfault: {error.format_message()}", err=True)
         sys.exit(2)
-    except (ValueError, OSError) as error:
-        sentence = sentence_of(error)
+    except (ValueError, OSError, ImportError) as error:
+        verb = next((word for word in sys.argv[1:] if word in cli.commands), "")
+        sentence = sentence_of(error, f"`sensorfault {verb}`")
         if sentence is None:
             raise
         click.echo(f"sensorfault: {sentence}", err=True)

@@ -22,6 +22,7 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     was not fitted on. With --flight a 20-minute flight, on which the receiver's height drifts and jumps.
     """
     from sensorfault.cli.scenarios import DRIVE, FLIGHT
+    from sensorfault.core.extras import require
     from sensorfault.evaluation.judge import judge
     from sensorfault.faults.inject import inject
     from sensorfault.faults.plan import plan
@@ -32,6 +33,7 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     from sensorfault.report.page import write_page
     from sensorfault.runtime.store import save
 
+    require("`sensorfault demo`", "polars", "plotly")
     scenario = FLIGHT if flight else DRIVE
     if context.get_parameter_source("method") == ParameterSource.DEFAULT:
         method = scenario.method

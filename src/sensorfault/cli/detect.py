@@ -48,10 +48,13 @@ def command(
     Without --model the method is fitted on the log's own beginning, which is then taken as healthy; of a long log
     that is read part by part, on no more than four million numbers.
     """
+    from sensorfault.core.extras import require
     from sensorfault.events.export import check
 
     for out in outs:
         check(out)
+    if report_path is not None:
+        require("a report page", "plotly")
     work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
     if long.by_parts(log, by_parts):
         result = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), report_path)

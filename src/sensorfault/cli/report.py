@@ -36,6 +36,9 @@ def command(
 
     One file, interactive, opens offline.
     """
+    from sensorfault.core.extras import require
+
+    require("`sensorfault report`", "polars", "plotly")
     from sensorfault.report.page import write_page
 
     work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])

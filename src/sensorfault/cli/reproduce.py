@@ -27,10 +27,13 @@ def command(name: str, seeds: int, quick: bool, out: Path | None, json_path: str
 
     STUDY is min2021, niu1998, multistep, or all. Its real logs are found through SENSORFAULT_DATA.
     """
+    from sensorfault.core.extras import require
     from sensorfault_studies.commit import commit
 
     studies = _studies(name)
     _check_folder(out)
+    if out is not None:
+        require("a study's page", "plotly")
     pages = [out / f"{study.name}{ending}" for study in studies for ending in (".html", ".json")] if out else []
     work.check_outputs([*(path for path in pages if path.parent.is_dir()), json_path], [])
     code = commit()

@@ -10,8 +10,8 @@ from sensorfault.logs.clock import GAP
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.late import Late
 from sensorfault.logs.one_clock import Piece, put_on_one_clock
-from sensorfault.logs.read import log_of
 from sensorfault.logs.readers.source import Source, Tables, joined
+from sensorfault.logs.reading import log_of
 from sensorfault.logs.stream import read_stream
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile

@@ -1,18 +1,17 @@
 """Several files on one clock: the ticks are the fastest file's, and nothing arrives before its time."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.logs.clock import GAP
 from sensorfault.logs.phrase import counted
+from sensorfault.logs.resample import Resample
 from sensorfault.logs.stream import Stream
 
 MOST_FILLED, PER_ROW = 100_000, 10  # ticks put into gaps, or so many for each row; beyond it a clock has jumped
 SAME_S = 1e-6  # two clocks' readings this near are one time
-Resample = Literal["hold", "linear"]
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ import numpy as np
 from sensorfault.logs.guess import guess
 from sensorfault.logs.joining import Joining, Said
 from sensorfault.logs.place import called_after, files_of, find_vehicle, pair_files
-from sensorfault.logs.read import GUESSED
 from sensorfault.logs.readers.beginning import is_long
 from sensorfault.logs.readers.formats import FORMATS, format_of, known_format, read_tables
 from sensorfault.logs.readers.source import Ask
+from sensorfault.logs.reading import GUESSED
 from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.readers.formats import SUFFIXES, format_of
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -24,6 +23,8 @@ def files_of(path: Where) -> list[Path]:
         if not files:
             raise LogError("no file was named; name a file, a folder or several files of one drive.")
     elif Path(path).is_dir():
+        from sensorfault.logs.readers.formats import SUFFIXES, format_of  # lazily: the readers need polars
+
         inside = ((file, format_of(file)) for file in Path(path).iterdir() if file.is_file())
         files = sorted({form.leader(file) for file, form in inside if form is not None})
         if not files:

@@ -2,13 +2,16 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import polars as pl
 from jaxtyping import Bool, Float, Int
 
+from sensorfault.core.extras import require
 from sensorfault.logs.units import from_si
+
+if TYPE_CHECKING:
+    import polars
 
 
 class LogError(ValueError):
@@ -147,8 +150,15 @@ class Log:
             sensors=tuple(s for s in self.sensors if s.name in kept),
         )
 
-    def frame(self) -> pl.DataFrame:
-        """A table for people: `time_s` and one column `sensor.channel` in the channel's own unit, null where absent."""
+    def frame(self) -> "polars.DataFrame":
+        """A table for people: `time_s` and one column `sensor.channel` in the channel's own unit, null where absent.
+
+        Raises:
+            MissingLibrary: polars is not installed.
+        """
+        require("a table", "polars")
+        import polars as pl
+
         columns: dict[str, Any] = {"time_s": self.time}
         for i, channel in enumerate(self.channels):
             columns[channel.path] = from_si(self.value[:, i], channel.unit)

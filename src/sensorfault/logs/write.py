@@ -2,17 +2,21 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import polars as pl
 from jaxtyping import Bool
 
+from sensorfault.core.extras import require
 from sensorfault.core.files import appearing
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows
 from sensorfault.logs.place import VEHICLE
 from sensorfault.logs.table import Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
+
+if TYPE_CHECKING:
+    import polars
 
 TIME = "time_s"
 
@@ -28,8 +32,10 @@ def write(log: Log, path: str | Path) -> Path:
 
     Raises:
         LogError: another suffix than .csv or .parquet, or the folder cannot be written to.
+        MissingLibrary: polars is not installed.
     """
     path = Path(path)
+    require(f"{path}: writing it", "polars")
     frame, vehicle = as_table(log, path.name)
     writers: dict[str, Callable[[Path], object]] = {".csv": frame.write_csv, ".parquet": frame.write_parquet}
     writer = writers.get(path.suffix.lower())
@@ -42,13 +48,13 @@ def write(log: Log, path: str | Path) -> Path:
     return beside
 
 
-def as_table(log: Log, file_name: str | None = None) -> tuple[pl.DataFrame, VehicleFile]:
+def as_table(log: Log, file_name: str | None = None) -> "tuple[polars.DataFrame, VehicleFile]":
     """A log's table, and the description of that table; `file_name`: what the table will be called.
 
     Where the fresh marks do not follow from the values, `SENSOR.epoch` columns count the measurements.
     """
     frame = log.frame()
-    counts: list[pl.Series] = []
+    counts = []
     entries = []
     for sensor in log.sensors:
         columns = list(log.of(sensor.name))
@@ -90,13 +96,17 @@ def _entry(sensor: Sensor, channels: tuple[ChannelEntry, ...], epoch: str | None
     return SensorEntry(sensor.name, channels, held=sensor.held, epoch=epoch, period_s=period)
 
 
-def _count(name: str, arrived: np.ndarray) -> pl.Series:
+def _count(name: str, arrived: np.ndarray) -> "polars.Series":
     """How many measurements have arrived; empty before the first."""
+    import polars as pl
+
     count = pl.Series(name, np.cumsum(arrived))
     return count.set(count == 0, None)
 
 
 def _appear(path: Path, writer: Callable[[Path], object]) -> None:
+    import polars as pl
+
     try:
         with appearing(path) as temporary:
             writer(temporary)

@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
+from sensorfault.core.extras import require
 from sensorfault.core.files import appearing
 from sensorfault.faults.fault import Fault
 from sensorfault.report.page_figure import Json
@@ -41,6 +42,9 @@ def write_page(
         truth: the faults that were injected, to be shown beside those found.
         title: headline, the log's name by default.
         summary: how the limits came about, one sentence each.
+
+    Raises:
+        MissingLibrary: plotly is not installed.
     """
     write_sketch(Sketch.of(detection.received), path, truth, title, summary, detection.log.notes)
 
@@ -54,6 +58,7 @@ def write_sketch(
     notes: Sequence[str] = (),
 ) -> None:
     """The same of what was gathered part by part; `notes`: what reading found."""
+    require("a report page", "plotly")
     text = _page(sketch, truth, title, summary, notes)
     with appearing(Path(path)) as temporary:
         temporary.write_text(text, encoding="utf-8")

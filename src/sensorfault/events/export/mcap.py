@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.events.event import Event
-from sensorfault.events.export.mcap_copy import copy, profile_of
 from sensorfault.events.export.moments import NS, Moment, moments, sentence
 from sensorfault.logs.table import Log
 
@@ -27,6 +26,8 @@ def write_mcap(events: Sequence[Event], log: Log, path: Path, source: Path | Non
     viewers would else let their lines break off: for state transitions.
     """
     from mcap.writer import Writer
+
+    from sensorfault.events.export.mcap_copy import copy, profile_of  # lazily: it needs the readers
 
     with path.open("wb") as file:
         writer: Any = Writer(file)

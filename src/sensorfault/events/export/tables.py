@@ -3,22 +3,24 @@
 import json
 from collections.abc import Sequence
 from pathlib import Path
-
-import polars as pl
+from typing import TYPE_CHECKING
 
 from sensorfault.events.event import Event
 from sensorfault.logs.table import Log
 
+if TYPE_CHECKING:
+    import polars
+
 _SCHEMA = {
-    "start_s": pl.Float64,
-    "end_s": pl.Float64,
-    "subject": pl.String,
-    "sensor": pl.String,
-    "channel": pl.String,
-    "kind": pl.String,
-    "peak_score": pl.Float64,
-    "limit": pl.Float64,
-    "method": pl.String,
+    "start_s": float,
+    "end_s": float,
+    "subject": str,
+    "sensor": str,
+    "channel": str,
+    "kind": str,
+    "peak_score": float,
+    "limit": float,
+    "method": str,
 }
 
 
@@ -37,5 +39,7 @@ def write_parquet(events: Sequence[Event], log: Log, path: Path, source: Path | 
     _frame(events).write_parquet(path)
 
 
-def _frame(events: Sequence[Event]) -> pl.DataFrame:
+def _frame(events: Sequence[Event]) -> "polars.DataFrame":
+    import polars as pl
+
     return pl.DataFrame([event.as_dict() for event in events], schema=_SCHEMA)

@@ -1,9 +1,9 @@
 """Write fault events to a file of the kind that its name says."""
 
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
+from sensorfault.core.extras import require
 from sensorfault.core.files import appearing
 from sensorfault.events.event import Event
 from sensorfault.events.export import bags, mcap, tables
@@ -19,6 +19,7 @@ KINDS: dict[str, Writer] = {
     ".bag": bags.write_bag1,
     "": bags.write_bag2,
 }
+_NEEDS = {".csv": "polars", ".parquet": "polars", ".mcap": "foxglove", ".bag": "rosbags", "": "rosbags"}
 _WORDS = ".jsonl, .csv, .parquet, .mcap (annotations), .bag (ROS 1) or a new folder (ROS 2 bag)"
 
 
@@ -26,13 +27,14 @@ def check(path: Path) -> None:
     """Whether events can be written under this name, before the work is done.
 
     Raises:
-        LogError: another kind of file, one that needs a library that is not there, or a folder that is there already.
+        LogError: another kind of file, or a folder that is there already.
+        MissingLibrary: this kind of file needs a library that is not installed.
     """
     kind = path.suffix.lower()
     if kind not in KINDS:
         raise LogError(f"{path}: events are written as {_WORDS}, not as '{path.suffix}'; change the name.")
-    if kind == ".mcap" and find_spec("foxglove") is None:
-        raise LogError(f"{path}: annotations need foxglove-sdk; run `pip install 'sensorfault[viewers]'`.")
+    if kind in _NEEDS:
+        require(f"{path}: writing it", _NEEDS[kind])
     if kind == "" and path.exists():
         raise LogError(f"{path} is there already; name a new folder for the bag, or a file with one of {_WORDS}.")
 
@@ -49,6 +51,7 @@ def write_events(events: Sequence[Event], log: Log, path: str | Path, source: Pa
 
     Raises:
         LogError: as `check` says, or the folder cannot be written to.
+        MissingLibrary: as `check` says.
     """
     path = Path(path)
     check(path)

@@ -1,5 +1,24 @@
 """Guess: what the columns of an unknown log are."""
 
-from sensorfault.logs.guess.vehicle import guess
+from collections.abc import Callable
 
-__all__ = ["guess"]
+from sensorfault.core.extras import require
+from sensorfault.logs.place import Where
+from sensorfault.logs.vehicle import VehicleFile
+
+
+def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> VehicleFile:
+    """Describe a log from its names and values.
+
+    Args:
+        path: a file, a folder, or several files of one drive.
+        tell: hears how much of a large file has been read, 0 to 1.
+
+    Raises:
+        LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
+        MissingLibrary: polars is not installed.
+    """
+    require(f"{path}: reading it", "polars")
+    from sensorfault.logs.guess.vehicle import guess_files
+
+    return guess_files(path, tell)

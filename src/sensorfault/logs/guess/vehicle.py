@@ -19,16 +19,8 @@ _RAW = "_uncalibrated"
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
-def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> VehicleFile:
-    """Describe a log from its names and values.
-
-    Args:
-        path: a file, a folder, or several files of one drive.
-        tell: hears how much of a large file has been read, 0 to 1.
-
-    Raises:
-        LogError: nothing can be read, no file has a time column, or the files are logs of different drives.
-    """
+def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
+    """What `guess` says."""
     files = files_of(path)
     topics = topics_of(files)
     others = [file.name for file in files if file not in topics.values()]

@@ -1,5 +1,6 @@
 """Recordings of a CAN bus (`.blf`, `.asc`), by python-can, decoded by the `.dbc` files beside them, by cantools."""
 
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from io import TextIOWrapper
@@ -8,7 +9,6 @@ from typing import Any
 
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.can_rows import Rows
-from sensorfault.logs.readers.extra import extra
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, with_notes
@@ -21,10 +21,12 @@ def read_can(path: Path, ask: Ask) -> Tables:
     """A table for each message that the databases describe, by its name. What cannot be decoded is counted and said.
 
     Raises:
-        LogError: no recording, no database beside it, or nothing in it that they describe; or no library for it.
+        LogError: no recording, no database beside it, or nothing in it that they describe.
+        ImportError: no library for it.
     """
     handing = Handing(ask)
-    with extra(path, "bus"), quiet() as aloud:
+    with warnings.catch_warnings(), quiet() as aloud:
+        warnings.simplefilter("ignore")
         import can  # lazily: only this format needs them
         import cantools
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sensorfault.core.extras import sentence_of_missing
 from sensorfault.logs.readers.attitude import with_attitude
 from sensorfault.logs.readers.bag1 import read_bag1
 from sensorfault.logs.readers.bag2 import first_part, read_bag2
@@ -146,7 +147,7 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
     """The tables of a file that are asked for and there; of a format with one table a file it has no name.
 
     Raises:
-        LogError: no such file, no reader for its name, or the reader cannot read it.
+        LogError: no such file, no reader for its name, the reader cannot read it, or it needs an extra.
     """
     if not path.exists():
         raise LogError(f"{path}: there is no such file; look at the path.")
@@ -157,6 +158,11 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
         tables = read_unpacked(path, lambda file: form.read(file, asked)) if is_packed(path) else form.read(path, asked)
     except OSError as error:
         raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
+    except ImportError as error:  # the other files of a folder can be read all the same
+        sentence = sentence_of_missing(error, f"{path}: reading it")
+        if sentence is None:
+            raise
+        raise LogError(sentence) from None
     return _finished(tables)
 
 

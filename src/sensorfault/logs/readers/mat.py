@@ -2,14 +2,13 @@
 
 import struct
 from collections import Counter
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 
+from sensorfault.core.extras import require
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.extra import missing
 from sensorfault.logs.readers.mat_load import load
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
@@ -46,8 +45,8 @@ def read_mat(path: Path, ask: Ask) -> Tables:
 def _loaded(path: Path) -> Loaded:
     """What is packed (version 7, MATLAB's default) carries checksums: all else is read where damage does no harm."""
     newest = _is_7_3(path)
-    if newest and find_spec("h5py") is None:
-        raise missing(path, "h5py", "matlab")
+    if newest:
+        require(f"{path}: reading it", "h5py")
     try:
         if newest:
             return load_apart("mat73_load", path)

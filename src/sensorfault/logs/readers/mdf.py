@@ -1,12 +1,11 @@
 """ASAM MDF measurement files (`.mf4`, `.mdf`): each channel group is a table with its own clock."""
 
-from importlib.util import find_spec
 from pathlib import Path
 
 import polars as pl
 
+from sensorfault.core.extras import require
 from sensorfault.logs.phrase import counted
-from sensorfault.logs.readers.extra import missing
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.mdf_load import TIME
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
@@ -21,10 +20,10 @@ def read_mdf(path: Path, ask: Ask) -> Tables:
     """Every channel group with two rows or more and numbers in it, on Unix time. A group that is damaged is left out.
 
     Raises:
-        LogError: no MDF file, or no such group in it; or asammdf is not installed.
+        LogError: no MDF file, or no such group in it.
+        MissingLibrary: asammdf is not installed.
     """
-    if find_spec("asammdf") is None:
-        raise missing(path, "asammdf", "bus")
+    require(f"{path}: reading it", "asammdf")
     handing = Handing(ask)
     try:
         loaded = load_apart("mdf_load", path, 0 if handing.asked else None)

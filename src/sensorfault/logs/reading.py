@@ -1,0 +1,83 @@
+"""The work of `read`: a log's files, its vehicle file, one clock."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from sensorfault.logs.clock import is_unix
+from sensorfault.logs.entries import FileEntry
+from sensorfault.logs.guess import guess
+from sensorfault.logs.one_clock import OneClock, put_on_one_clock
+from sensorfault.logs.place import Where, called_after, find_vehicle, pair_files
+from sensorfault.logs.readers.formats import read_tables, take_table
+from sensorfault.logs.readers.source import Ask, Source
+from sensorfault.logs.resample import Resample
+from sensorfault.logs.stream import Stream, read_stream
+from sensorfault.logs.table import Log
+from sensorfault.logs.vehicle import VehicleFile
+
+GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
+
+
+@np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
+def read_files(
+    path: Where, vehicle: str | Path | VehicleFile | None, resample: Resample, tell: Callable[[float], None]
+) -> Log:
+    """What `read` says."""
+    described = find_vehicle(path, vehicle)
+    known = called_after(described, path) if described else guess(path, tell)
+    notes = () if described else (GUESSED, *known.notes)
+    used = {sensor.file for sensor in known.sensors}
+    pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]
+    sources = _sources(pairs, described is None, tell)
+    streams = [
+        read_stream(source, entry, tuple(sensor for sensor in known.sensors if sensor.file == entry.name))
+        for (entry, _), source in zip(pairs, sources, strict=True)
+    ]
+    clock = put_on_one_clock(streams, resample)
+    damage = tuple(dict.fromkeys(one.sentence(source.path) for source in sources for one in source.damage))
+    said = [note for stream in streams for note in stream.notes]
+    all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
+    return log_of(known, streams, clock, all_notes, damage)
+
+
+def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callable[[float], None]) -> list[Source]:
+    """Each entry's table; each file is read once. `whole`: all of its tables, as `guess` has just asked for them."""
+    wanted: dict[Path, list[FileEntry]] = {}
+    for entry, file in pairs:
+        wanted.setdefault(file, []).append(entry)
+    found: dict[str, Source] = {}
+    for file, entries in wanted.items():
+        names = frozenset(entry.table for entry in entries if entry.table is not None)
+        every = whole or any(entry.table is None for entry in entries)
+        tables = read_tables(file, Ask(None if every else names, tell))
+        found |= {entry.name: take_table(file, tables, entry.table) for entry in entries}
+    return [found[entry.name] for entry, _ in pairs]
+
+
+def log_of(
+    vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tuple[str, ...], damage: tuple[str, ...]
+) -> Log:
+    """The streams' channels in the order of the vehicle file."""
+    start = clock.zero_s + float(clock.time[0])
+    zero = start if vehicle.zero_s is None else vehicle.zero_s
+    channels = [channel for stream in streams for channel in stream.channels]
+    sensors = {sensor.name: sensor for stream in streams for sensor in stream.sensors}
+    at = {channel.path: i for i, channel in enumerate(channels)}
+    order = [at[f"{sensor.name}.{channel.name}"] for sensor in vehicle.sensors for channel in sensor.channels]
+    in_order = order == list(range(len(order)))  # spares a copy of long logs
+    epoch = vehicle.epoch_s if vehicle.epoch_s is not None else (zero if is_unix(zero) else None)
+    return Log(
+        time=clock.time - clock.time[0] + (start - zero),
+        value=clock.value if in_order else np.ascontiguousarray(clock.value[:, order]),
+        fresh=clock.fresh if in_order else np.ascontiguousarray(clock.fresh[:, order]),
+        channels=tuple(channels[i] for i in order),
+        sensors=tuple(sensors[sensor.name] for sensor in vehicle.sensors),
+        name=vehicle.name,
+        notes=notes,
+        damage=damage,
+        epoch_s=epoch,
+        wheelbase_m=vehicle.wheelbase_m,
+        steering_ratio=vehicle.steering_ratio,
+    )
