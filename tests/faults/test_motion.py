@@ -80,7 +80,7 @@ def test_wheels_slip_where_wheels_are_heard() -> None:
     [
         (MotionFault("flight", 30.0, 2.0, 1.0), "no motion is called 'flight'"),
         (MotionFault("side slip", 59.0, 2.0, 1.0), "outside the log"),
-        (MotionFault("wheel slip", 30.0, 2.0, 1.0), "no speed told by wheels"),
+        (MotionFault("wheel slip", 30.0, 2.0, 1.0), "no wheel speed"),
     ],
 )
 def test_what_cannot_be_done_is_said(fault: MotionFault, said: str) -> None:

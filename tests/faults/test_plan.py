@@ -39,5 +39,5 @@ def test_a_planned_sweep_can_be_injected() -> None:
 
 
 def test_too_much_is_refused_in_a_sentence() -> None:
-    with pytest.raises(FaultError, match=r"3 faults with pauses of 10 s need 640 s and there are 599\.9 s"):
+    with pytest.raises(FaultError, match=r"3 faults with pauses of 10 s need 640 s, but there are 599\.9 s"):
         plan(LOG, [Fault("frozen", "gyro", "z", 0.0, 200.0)] * 3)

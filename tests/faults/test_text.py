@@ -35,13 +35,13 @@ def test_text_becomes_a_fault(text: str, fault: Fault) -> None:
         ("offset:gyro.z:99:1:2", "lies outside the log"),
         ("offset:gyro.z:5:-1:2", "is negative"),
         ("offset:gyro.z:5:1", "kind offset needs a magnitude"),
-        ("scale:gyro.z:5:1:", "a scale needs a magnitude"),
+        ("scale:gyro.z:5:1:", "kind scale needs a magnitude"),
         ("offset:gyro.z:5:1:sigma", "magnitude '' is not a number"),
         ("offset:gyro.z:5:1:big", "magnitude 'big' is not a number"),
         ("offset:gyro.z:soon:1:2", "onset 'soon' is not a number"),
         ("offset:gyro.z:5:inf:2", "finite"),
         ("frozen:gyro.z:5:1:2", "kind frozen has no magnitude"),
-        ("delay:gyro.z:5:1:2sigma", "not counted in sigmas"),
+        ("delay:gyro.z:5:1:2sigma", "cannot be in sigmas"),
     ],
 )
 def test_text_that_is_no_fault_is_refused_in_a_sentence(text: str, sentence: str) -> None:
@@ -61,7 +61,7 @@ def test_truth_comes_back_from_json() -> None:
     ("entries", "sentence"),
     [
         ({"kind": "offset"}, "is a JSON dict"),
-        ([3], "Fault 1 of the truth is no JSON object"),
+        ([3], "Fault 1 of the truth is not a JSON object"),
         ([BIAS, {"kind": "offset"}], "Fault 2 of the truth has no field 'sensor'"),
         ([BIAS | {"size": 1}], "unknown field 'size'"),
         ([BIAS | {"start_s": "1"}], "'start_s' is \"1\""),

@@ -1,1 +1,1 @@
-"""Faults put into logs on purpose: what a sensor does wrong, when and how much."""
+"""Faults injected into logs: what a sensor does wrong, when and how much."""

@@ -1,4 +1,4 @@
-"""Whether a fault can be injected into a log; if not, a sentence that says why."""
+"""Checks whether a fault can be injected into a log."""
 
 import math
 
@@ -9,10 +9,10 @@ from sensorfault.logs.table import Log
 
 
 def check_fault(fault: Fault) -> None:
-    """What can be said without a log.
+    """Check what needs no log.
 
     Raises:
-        FaultError: unknown kind, a number that is not finite, a duration or magnitude that makes no fault.
+        FaultError: unknown kind, a number that is not finite, a duration or magnitude that is no fault.
     """
     name = f"fault '{fault.kind}' on {fault.where}"
     if fault.kind not in KINDS:
@@ -23,19 +23,19 @@ def check_fault(fault: Fault) -> None:
     if fault.duration_s < 0:
         raise FaultError(f"{name}: duration {fault.duration_s:g} s is negative; give seconds from onset to end.")
     if fault.duration_s == 0 and fault.kind != "spike":
-        raise FaultError(f"{name}: duration is 0 s; only a short may last 0 s, give a longer one.")
+        raise FaultError(f"{name}: duration is 0 s; only a spike may last 0 s, give a longer duration.")
     if fault.magnitude == 0 and fault.kind not in (*SIZELESS, "scale"):
-        raise FaultError(f"{name}: magnitude is missing or 0, which is no fault; give a magnitude.")
+        raise FaultError(f"{name}: magnitude is missing or 0; give one.")
     if fault.magnitude == 1 and fault.kind == "scale":
         raise FaultError(f"{name}: a factor of 1 is no fault; give another factor.")
     if fault.magnitude < 0 and fault.kind in ("noise", "delay"):
         raise FaultError(f"{name}: magnitude {fault.magnitude:g} is negative; give a positive one.")
     if fault.sigmas and fault.kind not in OFFSETS:
-        raise FaultError(f"{name}: its magnitude is not counted in sigmas; only {', '.join(OFFSETS)} are.")
+        raise FaultError(f"{name}: its magnitude cannot be in sigmas; give sigmas only for {', '.join(OFFSETS)}.")
 
 
 def columns_of(fault: Fault, log: Log) -> tuple[int, ...]:
-    """The columns of the log that the fault strikes.
+    """The columns of the log that the fault affects.
 
     Raises:
         FaultError: the log has no such sensor or channel.
@@ -55,7 +55,7 @@ def columns_of(fault: Fault, log: Log) -> tuple[int, ...]:
 
 
 def check_onset(fault: Fault, log: Log) -> None:
-    """Whether the fault begins while the log runs.
+    """Check that the fault begins within the log.
 
     Raises:
         FaultError: it does not.
@@ -74,7 +74,7 @@ def sigma_of(log: Log, column: int) -> float:
     """Standard deviation [SI] of a channel's measurements over the log.
 
     Raises:
-        FaultError: the channel is constant or empty, so that it has none.
+        FaultError: the channel is constant or empty.
     """
     x = log.value[log.fresh[:, column], column]
     x = x[np.isfinite(x)]

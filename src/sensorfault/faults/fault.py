@@ -1,16 +1,16 @@
-"""What is done to a sensor: the truth against which a detection is judged."""
+"""An injected fault: the truth against which a detection is judged."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
 KINDS = ("spike", "offset", "drift", "frozen", "missing", "noise", "scale", "delay")
-OFFSETS = ("spike", "offset", "drift", "noise")  # their magnitude carries the channel's unit, or counts its sigmas
-SIZELESS = ("frozen", "missing")  # they have no magnitude
+OFFSETS = ("spike", "offset", "drift", "noise")  # magnitude in the channel's unit, or in sigmas
+SIZELESS = ("frozen", "missing")  # no magnitude
 FORMER_KINDS = {"short": "spike", "bias": "offset", "jam": "frozen", "miss": "missing"}  # the names until version 0.1
 
 
 def current_kind(name: str) -> str:
-    """The kind's name of today; an unknown name stays as it is."""
+    """The current name of a kind; an unknown name is returned unchanged."""
     return FORMER_KINDS.get(name, name)
 
 
@@ -25,7 +25,7 @@ class Fault:
     `channel` None means every channel of the sensor. `magnitude` is, by kind: spike, offset: the offset; drift: offset
     per second; noise: added standard deviation; scale: factor; delay: seconds; frozen, missing: none. Offsets are in
     the channel's own unit, or with `sigmas` in multiples of the channel's standard deviation over the log. A spike of
-    `duration_s` 0 is one sample; every other kind lasts. A former name of a kind (FORMER_KINDS) is accepted.
+    `duration_s` 0 is one sample; every other kind needs a duration. A former name of a kind (FORMER_KINDS) is accepted.
     """
 
     kind: str
@@ -46,7 +46,7 @@ class Fault:
 
     @property
     def where(self) -> str:
-        """`sensor.channel`, or `sensor` where all its channels are hit."""
+        """`sensor.channel`, or `sensor` where all its channels are affected."""
         return self.sensor if self.channel is None else f"{self.sensor}.{self.channel}"
 
     def as_dict(self) -> dict[str, Any]:

@@ -1,7 +1,7 @@
-"""Faults into a log: the same log with some sensors lying, and the truth about it.
+"""Inject faults into a log: the same log with faulty sensors, and the list of its faults.
 
-Every fault acts on measurements (the `fresh` entries of a channel). A row that only repeats a measurement repeats what
-has become of it: the value, or its absence.
+A fault acts on measurements (the `fresh` entries of a channel). A row that repeats a measurement then repeats the
+faulty one, or is empty where the measurement is gone.
 """
 
 import json
@@ -23,8 +23,8 @@ from sensorfault.logs.units import to_si
 class Injected:
     """A log with faults, and the truth.
 
-    `truth`: the faults as they were done, by onset: clipped to the log, a single spike at the time of the measurement
-    it struck. `mask`: the entries that a fault struck (a jam strikes a measurement even where it does not change it).
+    `truth`: the faults as injected, by onset: clipped to the log, a single spike at the time of its measurement.
+    `mask`: the entries that a fault affects (a frozen sensor counts as faulty even where its value is right).
     """
 
     log: Log
@@ -33,13 +33,13 @@ class Injected:
 
 
 def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:
-    """Let sensors of a log lie; the log given stays as it is.
+    """Inject faults into a log; the given log is not changed.
 
-    Faults on one channel act one after another, by onset, each on what the former left; the order of `faults` does not
-    matter. Chance depends on `seed` and the fault alone, so a fault does the same whatever else is injected.
+    Several faults on one channel are applied by onset, each to the result of the one before; the order of `faults` does
+    not matter. Random numbers depend on `seed` and the fault alone, not on the other faults.
 
     Raises:
-        FaultError: a fault that the log has no room for, or that makes no sense.
+        FaultError: a fault that does not fit the log, or is no fault.
     """
     value, fresh = log.value.copy(), log.fresh.copy()
     mask = np.zeros_like(fresh)
@@ -65,8 +65,8 @@ def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:
             onsets.append(float(read.time[at[0]]))
         if not onsets:
             raise FaultError(
-                f"{log.name}: {fault.where} measures nothing from {fault.start_s:g} to {fault.end_s:g} s for "
-                f"'{fault.kind}' to strike; move the onset or make it longer."
+                f"{log.name}: {fault.where} has no measurement from {fault.start_s:g} to {fault.end_s:g} s for "
+                f"'{fault.kind}' to act on; move the onset or make it longer."
             )
         truth.append(_as_done(fault, log, min(onsets)))
     return Injected(replace(log, value=value, fresh=fresh), tuple(truth), mask)
@@ -82,7 +82,7 @@ def _chance(fault: Fault, path: str, seed: int) -> np.random.Generator:
 
 
 def _struck(fault: Fault, time: np.ndarray, rng: np.random.Generator) -> Int[np.ndarray, " n"]:
-    """Which measurements the fault strikes."""
+    """Which measurements the fault affects."""
     first, end = np.searchsorted(time, (fault.start_s, fault.end_s))
     if fault.kind != "spike":
         return np.arange(first, end)
@@ -92,7 +92,7 @@ def _struck(fault: Fault, time: np.ndarray, rng: np.random.Generator) -> Int[np.
 
 
 def _size(fault: Fault, log: Log, column: int) -> float:
-    """The magnitude in SI; sigmas are those of the healthy log."""
+    """The magnitude in SI; sigma is that of the healthy log."""
     if fault.kind not in OFFSETS:
         return fault.magnitude
     if fault.sigmas:

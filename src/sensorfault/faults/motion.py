@@ -1,7 +1,7 @@
-"""A vehicle that leaves its model while every sensor is healthy: slips, is carried, spins, or its wheels do.
+"""Abnormal motion with healthy sensors: side slip, spin, wheel slip.
 
-Each sensor that would feel it tells the new motion; the others are left alone. What comes out is a log of a vehicle
-that did move like that, so a method should accuse the motion and no sensor.
+Each sensor that measures the motion shows it; the others stay unchanged. The result is a log of a vehicle that did move
+like that, so a method should report the motion and no sensor.
 """
 
 from dataclasses import dataclass, replace
@@ -14,16 +14,16 @@ from sensorfault.logs.table import Log
 from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
 
 MOTIONS = ("side slip", "spin", "wheel slip")
-EDGE_S = 0.5  # a motion sets in and ends within this time
+EDGE_S = 0.5  # a motion begins and ends within this time
 
 
 @dataclass(frozen=True)
 class MotionFault:
-    """What the vehicle does from start_s to start_s + duration_s.
+    """An abnormal motion from start_s to start_s + duration_s.
 
-    side slip: it also moves to its left with `magnitude` [m/s] (negative: right), without turning; for long: it is
-    carried. spin: it turns by `magnitude` [rad] to its left and goes on the way it went. wheel slip: its wheels turn
-    `magnitude` times as fast as the road passes (0: they are locked).
+    side slip: the vehicle also moves to its left with `magnitude` [m/s] (negative: right), without turning. spin: it
+    turns by `magnitude` [rad] to its left and keeps its course. wheel slip: its wheels turn `magnitude` times as fast
+    as the ground passes (0: locked).
     """
 
     kind: str
@@ -33,15 +33,15 @@ class MotionFault:
 
     @property
     def end_s(self) -> float:
-        """When it moves like its model again [s]."""
+        """End of the abnormal motion [s]."""
         return self.start_s + self.duration_s
 
 
 @dataclass(frozen=True)
 class Felt:
-    """Columns of the sensors that feel a motion; axes of the inertial unit that point forward, left and up.
+    """Columns of the sensors that measure a motion; axes of the inertial unit that point forward, left and up.
 
-    `velocity`: speed over ground and course where `polar`, else north and east. `wheels`: speeds told by wheels.
+    `velocity`: speed over ground and course where `polar`, else north and east. `wheels`: wheel speeds.
     """
 
     position: tuple[int, int]
@@ -56,22 +56,24 @@ class Felt:
 
 
 def move(log: Log, fault: MotionFault, felt: Felt) -> Log:
-    """The log of a vehicle that did what `fault` says; the log given stays as it is.
+    """The log of a vehicle that moved as `fault` says; the given log is not changed.
 
     Raises:
-        FaultError: an unknown motion, one outside the log, or one that no sensor of the log would feel.
+        FaultError: an unknown motion, one outside the log, or one that no sensor of the log measures.
     """
     if fault.kind not in MOTIONS:
         raise FaultError(f"no motion is called '{fault.kind}'; take one of {', '.join(MOTIONS)}.")
     if not (log.time[0] <= fault.start_s and fault.duration_s > 0 and fault.end_s <= log.time[-1]):
         raise FaultError(
-            f"{log.name}: a {fault.kind} from {fault.start_s:g} to {fault.end_s:g} s lies outside the log's "
+            f"{log.name}: a {fault.kind} from {fault.start_s:g} to {fault.end_s:g} s is outside the log's "
             f"{log.time[0]:g} to {log.time[-1]:g} s; move it."
         )
     value = log.value.copy()
     if fault.kind == "wheel slip":
         if not felt.wheels:
-            raise FaultError(f"{log.name} has no speed told by wheels, so nothing would feel a wheel slip.")
+            raise FaultError(
+                f"{log.name} has no wheel speed, so no sensor measures a wheel slip; choose another motion."
+            )
         rows = (log.time >= fault.start_s) & (log.time < fault.end_s)
         for column in felt.wheels:
             value[rows, column] *= fault.magnitude
@@ -112,9 +114,9 @@ def _slip(log: Log, fault: MotionFault, felt: Felt, value: Float[np.ndarray, "T 
 
 
 def _spin(log: Log, fault: MotionFault, felt: Felt, value: Float[np.ndarray, "T C"]) -> None:
-    """The gyro feels it turn, and the level forces come from another side; the way over ground stays."""
+    """The gyro measures the turn and the horizontal forces change direction; the path over ground stays."""
     if felt.gyro is None:
-        raise FaultError(f"{log.name} has no gyro, so nothing would feel a spin.")
+        raise FaultError(f"{log.name} has no gyro, so no sensor measures a spin; choose another motion.")
     shape = pulse(log.time, fault)
     total = float(np.trapezoid(shape, log.time))
     rate = fault.magnitude * shape / total
@@ -126,7 +128,7 @@ def _spin(log: Log, fault: MotionFault, felt: Felt, value: Float[np.ndarray, "T 
         force = log.value[:, felt.accelerometer]
         ahead, aside = force @ forward, force @ left
         c, s = np.cos(angle), np.sin(angle)
-        # the same force, by axes turned to the left
+        # the same force in axes turned to the left
         change = np.outer(c * ahead + s * aside - ahead, forward) + np.outer(c * aside - s * ahead - aside, left)
         value[:, felt.accelerometer] += change
 
@@ -141,7 +143,7 @@ def _heading(log: Log, felt: Felt) -> Float[np.ndarray, " T"]:
 
 
 def _at_fix(log: Log, column: int, change: Float[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
-    """The change as it was when the value of this row was measured."""
+    """The change at the time when the value of this row was measured."""
     fresh = log.fresh[:, column]
     source = np.maximum.accumulate(np.where(fresh, np.arange(len(log)), 0))
     return np.asarray(change[source])
@@ -150,7 +152,7 @@ def _at_fix(log: Log, column: int, change: Float[np.ndarray, " T"]) -> Float[np.
 def _radians(
     log: Log, felt: Felt, north: Float[np.ndarray, " T"], east: Float[np.ndarray, " T"]
 ) -> tuple[Float[np.ndarray, " T"], Float[np.ndarray, " T"]]:
-    """Latitude and longitude that lie so far away [m]."""
+    """Latitude and longitude of a point at this distance [m]."""
     latitude = float(np.nanmedian(log.value[:, felt.position[0]]))
     # N = a / √(1 - e² sin²φ),  M = N³ (1 - e²) / a²
     n = SEMI_MAJOR_AXIS / np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)

@@ -1,4 +1,4 @@
-"""A schedule of faults over a log, one after another with healthy pauses between them."""
+"""A schedule of faults over a log, one at a time, with healthy pauses between them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -8,7 +8,7 @@ import numpy as np
 from sensorfault.faults.fault import KINDS, OFFSETS, SIZELESS, Fault, FaultError, current_kind
 from sensorfault.logs.table import Log
 
-# Sizes at which each kind is plain to see but not absurd: offsets in sigmas, drift in sigmas a second.
+# Sizes that are clearly visible but realistic: offsets in sigmas, drift in sigmas per second.
 SIZES = {"spike": 10.0, "offset": 5.0, "drift": 0.5, "noise": 3.0, "scale": 2.0, "delay": 1.0}
 SIZES |= dict.fromkeys(SIZELESS, 0.0)
 
@@ -16,9 +16,9 @@ SIZES |= dict.fromkeys(SIZELESS, 0.0)
 def sweep(
     log: Log, kinds: Sequence[str] = KINDS, channels: Sequence[str] | None = None, duration_s: float = 10.0
 ) -> tuple[Fault, ...]:
-    """Every kind on every channel, at the sizes of `SIZES`, not yet scheduled (a short is a single spike).
+    """Every kind on every channel, with the sizes of `SIZES`, not yet scheduled (a spike is one sample).
 
-    `channels`: paths such as `gyro.z`; None takes all that a method may judge.
+    `channels`: paths such as `gyro.z`; None: all that a method may judge.
 
     Raises:
         FaultError: an unknown kind.
@@ -46,8 +46,8 @@ def plan(
 ) -> tuple[Fault, ...]:
     """Give each fault an onset, in shuffled order, between `start_s` and `end_s` of the log.
 
-    Before the first, between any two and after the last lie at least `pause_s` healthy seconds; what time is left over
-    is dealt out at random. The onsets that the faults came with are forgotten.
+    At least `pause_s` healthy seconds lie before the first fault, between two faults and after the last; spare time is
+    distributed at random. The given onsets are ignored.
 
     Raises:
         FaultError: the faults and pauses need more time than there is.
@@ -59,7 +59,7 @@ def plan(
     needed = float(lasting.sum()) + pause_s * (len(wanted) + 1)
     if needed > end - begin:
         raise FaultError(
-            f"{log.name}: {len(wanted)} faults with pauses of {pause_s:g} s need {needed:g} s and there are "
+            f"{log.name}: {len(wanted)} faults with pauses of {pause_s:g} s need {needed:g} s, but there are "
             f"{max(end - begin, 0.0):g} s; plan fewer or shorter faults."
         )
     order = rng.permutation(len(wanted))

@@ -1,7 +1,7 @@
 """The eight fault kinds, each a function of one channel's measurements.
 
-A shape sees the N measurements of a channel in order, held repetitions left out, and answers what the n struck ones
-read instead. Kinds as in Sharma, Golubchik & Govindan, "Sensor faults: detection methods and prevalence in real-world
+A shape takes the N measurements of a channel in order, without held repetitions, and returns the faulty values of the n
+affected ones. Kinds as in Sharma, Golubchik & Govindan, "Sensor faults: detection methods and prevalence in real-world
 datasets" (2010), and Min et al. (2021), section 2.
 """
 
@@ -11,16 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-SPIKE_EVERY = 10  # measurements from one spike of a longer short to the next, on average
-_SAME_TIME_S = 1e-9  # two clock readings closer than this are one
+SPIKE_EVERY = 10  # mean number of measurements from one spike to the next in a longer spike fault
+_SAME_TIME_S = 1e-9  # times closer than this are equal
 
 
 @dataclass(frozen=True)
 class Struck:
-    """The measurements of one channel and which of them the fault strikes.
+    """The measurements of one channel and which of them the fault affects.
 
-    `time` [s] and `value` [SI] are all N measurements, `at` the struck ones in order, `onset_s` the start of the fault,
-    `size` its magnitude in SI (offset, offset/s, standard deviation, factor or seconds).
+    `time` [s] and `value` [SI] are all N measurements, `at` the affected ones in order, `onset_s` the start of the
+    fault, `size` its magnitude in SI (offset, offset/s, standard deviation, factor or seconds).
     """
 
     time: Float[np.ndarray, " N"]
@@ -32,12 +32,12 @@ class Struck:
 
     @property
     def t(self) -> Float[np.ndarray, " n"]:
-        """When the struck measurements were made [s]."""
+        """Times of the affected measurements [s]."""
         return self.time.take(self.at)
 
     @property
     def x(self) -> Float[np.ndarray, " n"]:
-        """What they would have read."""
+        """Their healthy values."""
         return self.value.take(self.at)
 
 
@@ -45,28 +45,28 @@ Shape = Callable[[Struck], Float[np.ndarray, " n"]]
 
 
 def offset(s: Struck) -> Float[np.ndarray, " n"]:
-    """Bias, and short at its spikes: y = x + b."""
+    """Offset, and a spike at its samples: y = x + b."""
     return s.x + s.size
 
 
 def drift(s: Struck) -> Float[np.ndarray, " n"]:
-    """A ramp that grows until the fault ends and is then gone: y = x + r (t - t0)."""
+    """A ramp from the onset to the end of the fault: y = x + r (t - t0)."""
     return s.x + s.size * (s.t - s.onset_s)
 
 
 def jam(s: Struck) -> Float[np.ndarray, " n"]:
-    """New measurements keep coming and all repeat the last one before onset (the first of all, if none was before)."""
+    """New measurements arrive, but all repeat the last one before the onset (the first one if there is none before)."""
     last_healthy = max(s.at[0] - 1, 0)
     return np.full(len(s.at), s.value[last_healthy])
 
 
 def miss(s: Struck) -> Float[np.ndarray, " n"]:
-    """Nothing arrives."""
+    """No measurement arrives."""
     return np.full(len(s.at), np.nan)
 
 
 def noise(s: Struck) -> Float[np.ndarray, " n"]:
-    """White noise on top, one draw a measurement: y = x + N(0, σ²)."""
+    """Added white noise, one draw per measurement: y = x + N(0, σ²)."""
     return s.x + s.size * s.rng.standard_normal(len(s.at))
 
 
@@ -76,7 +76,7 @@ def scale(s: Struck) -> Float[np.ndarray, " n"]:
 
 
 def delay(s: Struck) -> Float[np.ndarray, " n"]:
-    """Each measurement shows the latest one that was `size` seconds old or older: y(t) = x(t - d)."""
+    """Each measurement shows the latest one that is at least `size` seconds old: y(t) = x(t - d)."""
     seen = np.searchsorted(s.time, s.t - s.size + _SAME_TIME_S, side="right") - 1
     return s.value.take(np.maximum(seen, 0))
 
@@ -94,9 +94,9 @@ SHAPES: dict[str, Shape] = {
 
 
 def spikes(within: Int[np.ndarray, " m"], rng: np.random.Generator) -> Int[np.ndarray, " n"]:
-    """Which of these measurements a longer short strikes: the first, then single ones, never two in a row.
+    """The spikes of a longer spike fault: the first measurement, then single ones, never two in a row.
 
-    Gaps are 2 .. 2 SPIKE_EVERY - 2 measurements, uniformly.
+    Gaps are uniform from 2 to 2 SPIKE_EVERY - 2 measurements.
     """
     gaps = rng.integers(2, 2 * SPIKE_EVERY - 1, size=len(within))
     steps = np.concatenate(([0], np.cumsum(gaps)))

@@ -1,4 +1,4 @@
-"""Faults as text: one on a command line, all of a log's truth as JSON."""
+"""Faults as text: one on the command line, the truth of a log as JSON."""
 
 import json
 import re
@@ -15,10 +15,10 @@ FORM = "kind:sensor[.channel]:onset_s:duration_s[:magnitude[sigma]]"
 def parse_fault(text: str, log: Log | None = None) -> Fault:
     """`"offset:gyro.z:120:20:5sigma"` -> an offset of five sigmas on gyro.z from 120 s for 20 s.
 
-    With `log`, the sensor, the channel and the onset are looked up too.
+    With `log`, the sensor, the channel and the onset are checked too.
 
     Raises:
-        FaultError: the text is not of the form, or the fault makes no sense (in this log).
+        FaultError: the text has another form, or is no fault (in this log).
     """
     parts = text.strip().split(":")
     if len(parts) not in (4, 5):
@@ -50,15 +50,15 @@ def parse_fault(text: str, log: Log | None = None) -> Fault:
 
 
 def truth_to_json(truth: Iterable[Fault]) -> str:
-    """A list of objects, one a fault, with the fields of `Fault` as keys."""
+    """A JSON list with one object per fault; the keys are the fields of `Fault`."""
     return json.dumps([fault.as_dict() for fault in truth], indent=1)
 
 
 def truth_from_json(text: str) -> tuple[Fault, ...]:
-    """What `truth_to_json` wrote.
+    """Read what `truth_to_json` wrote.
 
     Raises:
-        FaultError: not JSON, not a list of faults, or a fault with a missing, foreign or impossible field.
+        FaultError: not JSON, not a list of faults, or a fault with a missing, unknown or invalid field.
     """
     try:
         entries = json.loads(text)
@@ -90,7 +90,7 @@ _TYPES: dict[str, tuple[type, ...]] = {
 def _fault(entry: Any, number: int) -> Fault:
     """One entry of the list, checked field by field."""
     if not isinstance(entry, dict):
-        raise FaultError(f"Fault {number} of the truth is no JSON object; write one with {', '.join(_TYPES)}.")
+        raise FaultError(f"Fault {number} of the truth is not a JSON object; write one with {', '.join(_TYPES)}.")
     optional: dict[str, Any] = {"magnitude": 0.0, "sigmas": False, "channel": None}
     if foreign := sorted(set(entry) - set(_TYPES)):
         raise FaultError(f"Fault {number} of the truth has an unknown field '{foreign[0]}'; leave it out.")

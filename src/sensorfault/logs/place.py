@@ -23,12 +23,13 @@ def files_of(path: Where) -> list[Path]:
         if not files:
             raise LogError("no file was named; name a file, a folder or several files of one drive.")
     elif Path(path).is_dir():
-        from sensorfault.logs.readers.formats import SUFFIXES, format_of  # lazily: the readers need polars
+        from sensorfault.logs.readers.formats import format_of  # lazily: the readers need polars
+        from sensorfault.logs.readers.registry import suffixes
 
         inside = ((file, format_of(file)) for file in Path(path).iterdir() if file.is_file())
         files = sorted({form.leader(file) for file, form in inside if form is not None})
         if not files:
-            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(SUFFIXES)} there.")
+            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(suffixes())} there.")
     else:
         files = [Path(path)]
     for file in files:

@@ -1,1 +1,1 @@
-"""Drives that never happened: true motion and what real sensors would have said about it."""
+"""Simulated drives: true motion and the measurements of realistic sensors."""

@@ -1,4 +1,4 @@
-"""Leaders that sail beside a follower and tell it by sound where they are: how far away they seem to be, and when."""
+"""Leaders that accompany a follower under water and send their positions by sound: ranges and their times."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-Noise = Callable[[np.random.Generator, int], Float[np.ndarray, " n"]]  # so many errors of a range [m]
-LEADER_SD = 0.3  # error of where a leader says it is, north and east [m]
+Noise = Callable[[np.random.Generator, int], Float[np.ndarray, " n"]]  # standard deviation of a range [m]
+LEADER_SD = 0.3  # error of a leader's reported position, north and east [m]
 
 
 @dataclass(frozen=True)
 class Ranging:
-    """`period_s`: between two ranges of one leader. `lost`: share of them that never arrive. `alternating`: leaders
-    take turns, else each has a clock of its own. `sound`: true over assumed speed of sound. `noise`: errors of the
+    """`period_s`: time between two ranges of one leader. `lost`: share of ranges that never arrive. `alternating`:
+    leaders take turns, else each has its own clock. `sound`: true over assumed speed of sound. `noise`: errors of the
     ranges, Gaussian of `sigma_m` if not given; a share `outliers` of them is up to `outlier_m` too long (an echo).
     """
 
@@ -30,7 +30,7 @@ class Ranging:
 
 @dataclass(frozen=True)
 class Heard:
-    """Of each of L leaders: where it is and says it is, north, east, down [m]; and the range to it [m]."""
+    """For each of L leaders: its true and its reported position, north, east, down [m], and the range to it [m]."""
 
     position: Float[np.ndarray, "T L 3"]
     result: Float[np.ndarray, "T L 3"]
@@ -42,7 +42,7 @@ class Heard:
 def hear(
     time: Float[np.ndarray, " T"], follower: Float[np.ndarray, "T 3"], way: Ranging, rng: np.random.Generator
 ) -> Heard:
-    """What a follower on this path (north, east, down [m]) hears of leaders that keep around it."""
+    """What a follower on this path (north, east, down [m]) receives from leaders that stay near it."""
     on_path, on_time, on_error = rng.spawn(3)
     position = np.stack([_beside(time, follower, j, way.leaders, on_path) for j in range(way.leaders)], axis=1)
     true = np.linalg.norm(position - follower[:, None], axis=2)
@@ -59,7 +59,7 @@ def hear(
 def _beside(
     time: Float[np.ndarray, " T"], follower: Float[np.ndarray, "T 3"], j: int, leaders: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "T 3"]:
-    """A leader off to a side of its own, that swings to and fro by some 1 m/s."""
+    """A leader to one side of the follower, moving to and fro with about 1 m/s."""
     side = 2 * np.pi * (j + rng.uniform(-0.2, 0.2)) / (2 * leaders)
     off = rng.uniform(250, 500) * np.array([np.cos(side), np.sin(side)])
     swing = np.zeros((len(time), 2))
@@ -71,7 +71,7 @@ def _beside(
 
 
 def _schedule(time: Float[np.ndarray, " T"], way: Ranging, rng: np.random.Generator) -> Bool[np.ndarray, "T L"]:
-    """At which ticks a range to which leader arrives."""
+    """At which ticks a range to each leader arrives."""
     received = np.zeros((len(time), way.leaders), bool)
     for j in range(way.leaders):
         first = j * way.period_s / way.leaders if way.alternating else rng.uniform(0, way.period_s)

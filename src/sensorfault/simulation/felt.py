@@ -1,4 +1,4 @@
-"""What an inertial unit feels that is carried over a turning earth: the strapdown mechanisation the other way round."""
+"""What an inertial unit measures on the rotating earth: the inverse of the strapdown mechanisation."""
 
 import numpy as np
 from jaxtyping import Float
@@ -15,9 +15,9 @@ def felt(
 ) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
     """Angular rate [rad/s] and specific force [m/s²] in body axes, each the mean over the step that ends with the row.
 
-    The first row is as the second. Positions, velocities and attitudes (body to ECEF) are of the ticks.
+    The first row equals the second. Positions, velocities and attitudes (body to ECEF) are given at the ticks.
 
-    Source: Groves (2013), section 5.3, solved for what the instruments feel.
+    Source: Groves (2013), section 5.3, solved for the measurements.
     """
     omega = np.array([0.0, 0.0, EARTH_RATE_RAD_S])
     c, s = np.cos(EARTH_RATE_RAD_S * step_s), np.sin(EARTH_RATE_RAD_S * step_s)

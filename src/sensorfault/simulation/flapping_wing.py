@@ -1,4 +1,4 @@
-"""A flight of a flapping-wing aircraft that never was; with a beat of 0 it is one with fixed wings."""
+"""A simulated flight of a flapping-wing aircraft; with a beat of 0 Hz, of a fixed-wing one."""
 
 from dataclasses import replace
 
@@ -45,14 +45,14 @@ def fly(
     barometer_hz: float = 10.0,
     origin_deg: tuple[float, float, float] = (34.23, 108.91, 400.0),
 ) -> Simulated:
-    """A flight of about 60 m height that climbs, sinks and turns; nobody takes off or lands.
+    """A flight at about 60 m height that climbs, descends and turns, without take-off and landing.
 
     Sensors: `gyro`, `accelerometer` (x forward, y left, z up; consumer grade), `attitude` (pitch: nose up), `control`
-    and `airspeed` at `imu_hz`, the clock of the log; `gnss` and `barometer` at rates of their own, held until the next.
-    The wings' beat shakes gyro, accelerometer and barometer. The same seed gives the same flight.
+    and `airspeed` at `imu_hz`, the clock of the log; `gnss` and `barometer` at their own rates, repeated between
+    measurements. The wing beat shakes gyro, accelerometer and barometer. The same seed gives the same flight.
 
     Raises:
-        ValueError: a duration or rate with which there is no flight.
+        ValueError: a duration or rate that is too small or too large.
     """
     if not duration_s * imu_hz >= 2:
         raise ValueError(f"A flight of {duration_s:g} s at {imu_hz:g} Hz has fewer than two samples; make it longer.")
@@ -90,7 +90,7 @@ def fly(
 
 
 def _truth(flight: Flight, beat: WingBeat, start: tuple[float, float, float]) -> Float[np.ndarray, "T 19"]:
-    """What faultless sensors would say; rates and forces include the beat, heights do not."""
+    """The values of perfect sensors; rates and forces include the beat, heights do not."""
     m = flight.motion
     angles = np.stack([-m.roll, -m.pitch, np.mod(np.pi / 2 - m.heading, 2 * np.pi)], axis=1)
     return np.concatenate(
@@ -138,7 +138,7 @@ def _pressure(
 
 
 def _rest(true: Float[np.ndarray, "T 6"], rate_hz: float, rng: np.random.Generator) -> Float[np.ndarray, "T 6"]:
-    """Attitude with an error that wanders, commands as they are, and an airspeed with noise."""
+    """Attitude with a drifting error, exact commands, and airspeed with noise."""
     n = len(true)
     wander = np.stack([gauss_markov(rng, n, 1 / rate_hz, LEVEL_S) for _ in range(3)], axis=1)
     error = np.column_stack([LEVEL_SD * wander, np.zeros((n, 2)), PITOT_SD * rng.standard_normal(n)])
@@ -146,6 +146,6 @@ def _rest(true: Float[np.ndarray, "T 6"], rate_hz: float, rng: np.random.Generat
 
 
 def _held(rows: Float[np.ndarray, "n k"], new: Bool[np.ndarray, " T"]) -> Float[np.ndarray, "T k"]:
-    """Each row until the next."""
+    """Repeat each row until the next."""
     row: Float[np.ndarray, "T k"] = rows[np.cumsum(new) - 1]
     return row

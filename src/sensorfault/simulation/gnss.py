@@ -1,4 +1,4 @@
-"""What a consumer GNSS receiver says: new fixes now and then, repeated until the next."""
+"""A consumer GNSS receiver: fixes at a low rate, repeated between fixes."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -10,9 +10,9 @@ from sensorfault.simulation.noise import gauss_markov
 POSITION_SD, POSITION_S = np.array([1.2, 1.2, 2.5]), 60.0  # error east, north, up [m], correlation time [s]
 POSITION_WHITE = 0.05  # [m]
 VELOCITY_SD = 0.06  # along and across [m/s]
-FROZEN_BELOW = 0.5  # a slower car has no course of its own [m/s]
+FROZEN_BELOW = 0.5  # below this speed the course is unknown [m/s]
 COURSE_LAG_S = 0.5  # receivers smooth the course
-HOLD_EVERY_S, HOLD_S = 60.0, (0.3, 0.6)  # now and then no fix comes in time
+HOLD_EVERY_S, HOLD_S = 60.0, (0.3, 0.6)  # some fixes arrive late
 # latitude, longitude [rad], altitude [m], speed [m/s], course [rad]: one count of the output
 RESOLUTION = np.array([np.deg2rad(1e-7), np.deg2rad(1e-7), 0.01, 0.01 / 3.6, np.deg2rad(0.01)])
 
@@ -28,7 +28,7 @@ def ideal(m: Motion, origin: tuple[float, float, float]) -> Float[np.ndarray, "T
 def receive(
     m: Motion, origin: tuple[float, float, float], rate_hz: float, rng: np.random.Generator
 ) -> tuple[Float[np.ndarray, "T 5"], Bool[np.ndarray, " T"]]:
-    """What the receiver shows at every tick (columns as in `ideal`), and whether it is a new fix."""
+    """The receiver's output at every tick (columns as in `ideal`), and whether it is a new fix."""
     fresh = due(m.time, rate_hz)
     fresh[1:] &= ~_late(m.time, rng)[1:]
     at = np.flatnonzero(fresh)
@@ -55,7 +55,7 @@ def due(time: Float[np.ndarray, " T"], rate_hz: float) -> Bool[np.ndarray, " T"]
 
 
 def _late(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Bool[np.ndarray, " T"]:
-    """Ticks at which the receiver is held up."""
+    """Ticks at which the receiver is late."""
     n = rng.poisson(time[-1] / HOLD_EVERY_S)
     begin = np.sort(rng.uniform(0.0, time[-1], n))
     end = begin + rng.uniform(*HOLD_S, n)

@@ -1,4 +1,4 @@
-"""What an inertial sensor in the car would feel, and what a consumer one says. Axes: x forward, y left, z up."""
+"""An inertial sensor in a car: true rates and forces, and a consumer-grade sensor. Axes: x forward, y left, z up."""
 
 from dataclasses import dataclass
 
@@ -13,11 +13,11 @@ DEGREE = np.pi / 180
 
 @dataclass(frozen=True)
 class Grade:
-    """Errors of three like axes, in u = rad/s or m/s^2.
+    """Errors of three axes of one kind, in u = rad/s or m/s^2.
 
     The defaults below are of consumer MEMS grade, as data sheets of six-axis phone sensors state them (Bosch BMI160:
-    0.007 °/s/√Hz, 180 µg/√Hz, ±3 °/s and ±40 mg at most when switched on); what the bias does in a run (instability) is
-    a Gauss-Markov process.
+    0.007 °/s/√Hz, 180 µg/√Hz, ±3 °/s and ±40 mg at most when switched on); the bias instability within a run is a
+    Gauss-Markov process.
     """
 
     noise_density: float  # [u/√Hz]

@@ -1,4 +1,4 @@
-"""How a driver takes a route: speed over time, and the motion of the car that follows."""
+"""How a driver follows a route: speed over time, and the motion of the car."""
 
 from dataclasses import dataclass
 
@@ -13,12 +13,12 @@ GRAVITY = 9.81  # [m/s^2]
 
 @dataclass(frozen=True)
 class Manner:
-    """How a vehicle is driven, and how it leans on its springs; as it is, a car in a town."""
+    """How a vehicle is driven, and how it leans on its springs; the defaults are those of a car in a town."""
 
     lateral: float = 2.8  # comfortable acceleration to the side [m/s^2]
     launch: float = 1.6  # comfortable acceleration [m/s^2]
     brake: float = 1.9  # comfortable deceleration [m/s^2]
-    easing_s: float = 1.6  # a pedal is worked over about this time: jerk stays below 5 m/s^3
+    easing_s: float = 1.6  # time to press a pedal: jerk stays below 5 m/s^3
     wait_s: tuple[float, float] = (5.0, 30.0)  # at a light
     mood: tuple[float, float, float] = (0.92, 0.06, 80.0)  # speed over limit: mean, standard deviation, length [m]
     roll_per_g: float = float(np.deg2rad(4.0))
@@ -46,7 +46,7 @@ class Motion:
 
 
 def speed_limit(route: Route, rng: np.random.Generator, manner: Manner = CAR) -> Float[np.ndarray, " M"]:
-    """Speed at each point of the route [m/s]: as fast as limit, curves and comfort allow, 0 at stops."""
+    """Speed at each point of the route [m/s]: the highest that limit, curves and comfort allow, 0 at stops."""
     mean, spread, length_m = manner.mood
     mood = mean + spread * gauss_markov(rng, len(route.distance), STEP_M, length_m)
     # v² κ ≤ lateral
@@ -96,5 +96,5 @@ def travel(route: Route, time: Float[np.ndarray, " T"], rng: np.random.Generator
 
 
 def integral(x: Float[np.ndarray, "T *n"], step: float) -> Float[np.ndarray, "T *n"]:
-    """Trapezoids from the first row on, which becomes 0."""
+    """Integral by the trapezoidal rule, 0 at the first row."""
     return np.concatenate((np.zeros_like(x[:1]), np.cumsum((x[1:] + x[:-1]) * step / 2, axis=0)))

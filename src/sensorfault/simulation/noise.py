@@ -7,8 +7,8 @@ from jaxtyping import Float
 def shaped(rng: np.random.Generator, samples: int, density: Float[np.ndarray, " F"]) -> Float[np.ndarray, " samples"]:
     """Gaussian noise of variance 1 whose power spectrum has this shape.
 
-    `density` belongs to the F = n/2 + 1 frequencies `np.fft.rfftfreq(n)` of an even n ≥ samples; what is beyond
-    `samples` is cut off, so that the end does not know the beginning.
+    `density` belongs to the F = n/2 + 1 frequencies `np.fft.rfftfreq(n)` of an even n ≥ samples; the rest beyond
+    `samples` is cut off, so that the end is not correlated with the beginning.
     """
     n = 2 * (len(density) - 1)
     # White noise has the same power at each frequency; √density shapes it, and the mean over all n makes it variance 1.
@@ -46,7 +46,7 @@ def band(
 
 
 def smooth(x: Float[np.ndarray, " T"], width: int) -> Float[np.ndarray, " T"]:
-    """Centred average with a raised-cosine window of about `width` samples; the ends are continued as they are."""
+    """Centred average with a raised-cosine window of about `width` samples; the end values are extended."""
     half = max(width // 2, 1)
     window = np.hanning(2 * half + 3)[1:-1]
     return np.convolve(np.pad(x, half, mode="edge"), window / window.sum(), mode="valid")

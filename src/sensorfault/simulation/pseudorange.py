@@ -1,4 +1,4 @@
-"""What is wrong with pseudoranges and their rates: noise of satellites low and high, and reflections."""
+"""Errors of pseudoranges and range rates: noise by elevation, and reflections."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -10,7 +10,7 @@ Noise = Literal["gaussian", "heavy"]
 
 WHITE, WANDER, CONSTANT = 0.6, 0.7, 0.35  # parts of heavy noise, in sigmas
 WHITE_DOF, WANDER_DOF = 4, 5
-WANDER_S = (8.0, 40.0)  # correlation time, one a satellite
+WANDER_S = (8.0, 40.0)  # correlation time, one per satellite
 BURST_EVERY_S, BURST_S, BURST_SIGMAS = 2000.0, 3.0, 3.0  # means of exponential distributions
 RATE_M_S = (0.05, 0.1)  # of range rates: overhead and on the horizon
 
@@ -24,17 +24,17 @@ def sigma(elevation: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
 def errors(
     noise: Noise, seeds: Sequence[int], elevation: Float[np.ndarray, "T S"], period_s: float = 1.0
 ) -> Float[np.ndarray, "N T S"]:
-    """Errors of pseudoranges [m] for each seed, whatever other seeds are asked for with it.
+    """Errors of pseudoranges [m] for each seed; the errors of one seed do not depend on the other seeds.
 
     *gaussian*: sigma times white noise. *heavy*: sigma times the sum of white noise (0.6 of Student's t with 4 degrees
     of freedom), wander (0.7 of a first-order Gauss-Markov process of 8 to 40 s driven by t with 5), a constant (0.35 of
-    a standard normal) and bursts as of reflections: always too long, one in 2000 s a satellite, 3 s long and 3 sigmas
-    high in the mean. Both t are scaled to variance 1, so that the whole has the sigma it is told with (1.00; what is
-    heavy is its tail and its memory). The paper's seed is silent on all this; of some readings
-    tried, this is the one in which a limit on each innovation finds steps as often as in the study's forerunner.
+    a standard normal) and bursts like reflections: always too long, one in 2000 s per satellite, on average 3 s long
+    and 3 sigmas high. Both t are scaled to variance 1, so that the sum has the given sigma; its tail and its
+    correlation are heavier. The paper does not describe its noise. With this one, a limit on each innovation finds
+    steps as often as in the paper.
 
     Args:
-        noise: which.
+        noise: gaussian or heavy.
         seeds: N of them.
         elevation: of S satellites at T epochs [rad].
         period_s: from one epoch to the next [s].

@@ -17,9 +17,9 @@ def wander(
     """Offset [m] and drift [m/s] of a temperature-compensated oscillator at these times.
 
     Args:
-        rng: chance.
+        rng: random numbers.
         time: rising [s].
-        jump_s: from here on the offset is a millisecond larger, as cheap receivers keep theirs small.
+        jump_s: from this time on the offset is a millisecond larger, like the clock jumps of cheap receivers.
 
     Source: R. G. Brown, P. Y. C. Hwang, Introduction to Random Signals and Applied Kalman Filtering, 4th ed. (2012),
     section 9.3, with the Allan coefficients h0 = 2e-19 and h-2 = 2e-20 of its table 9.3: c² h0 / 2 and 2 π² c² h-2.

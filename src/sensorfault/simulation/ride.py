@@ -1,4 +1,4 @@
-"""A ride with an inertial unit and satellites: the truth at each tick, and the log that a recorder would have made."""
+"""A ride with an inertial unit and satellites: the truth at each tick, and the recorded log."""
 
 from dataclasses import dataclass
 
@@ -24,9 +24,9 @@ _TOLD = (
 
 @dataclass(frozen=True)
 class Ride:
-    """The truth at the T ticks of `log`, and what was overhead at its E epochs of satellites.
+    """The truth at the T ticks of `log`, and the satellites at its E epochs.
 
-    Body axes: forward, right, down. `error` is in `log` already; what is NaN in it was not received.
+    Body axes: forward, right, down. `log` includes `error`; a satellite was not received where `error` is NaN.
     """
 
     log: Log

@@ -1,4 +1,4 @@
-"""A drive through a town that never was: what the demo and the tests run on where no real log is at hand."""
+"""A simulated drive through a town, for the demo, the tests, and whoever has no real log."""
 
 from dataclasses import dataclass, replace
 
@@ -10,7 +10,7 @@ from sensorfault.simulation.motion import Motion, travel
 from sensorfault.simulation.route import town
 from sensorfault.simulation.vibration import vibration
 
-FASTEST = 18.0  # no drive gets further in a second [m]
+FASTEST = 18.0  # most distance in a second [m]
 CHANNELS = (
     *(Channel(axis, "gyro", "deg/s") for axis in "xyz"),
     *(Channel(axis, "accelerometer", "m/s^2") for axis in "xyz"),
@@ -24,10 +24,10 @@ CHANNELS = (
 
 @dataclass(frozen=True)
 class Simulated:
-    """What the sensors said and what was so.
+    """The measurements and the truth.
 
-    `truth` has the ticks and channels of `log` as faultless, noiseless sensors would have filled them, a new value at
-    each tick (a true rate or force includes the shaking of the car); `motion` is the car's own.
+    `truth` has the ticks and channels of `log` with the values of perfect sensors, new at each tick (true rates and
+    forces include the vibration of the car); `motion` is the motion of the car.
     """
 
     log: Log
@@ -45,11 +45,11 @@ def drive(
     """A drive from standstill with lights, corners, bends and roundabouts at up to 60 km/h.
 
     Sensors: `gyro` and `accelerometer` (x forward, y left, z up; consumer grade) at `imu_hz`, the clock of the log;
-    `gnss` at `gnss_hz`, held until the next fix. `origin_deg`: latitude, longitude [deg] and altitude [m] of the start.
-    The same seed gives the same drive; motion, shaking and sensor errors draw from chances of their own.
+    `gnss` at `gnss_hz`, repeated between fixes. `origin_deg`: latitude, longitude [deg] and altitude [m] of the start.
+    The same seed gives the same drive; motion, vibration and sensor errors have separate random generators.
 
     Raises:
-        ValueError: a duration or rate with which there is no drive.
+        ValueError: a duration or rate that is too small or too large.
     """
     if not duration_s * imu_hz >= 2:
         raise ValueError(f"A drive of {duration_s:g} s at {imu_hz:g} Hz has fewer than two samples; make it longer.")

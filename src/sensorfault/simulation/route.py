@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from sensorfault.simulation.noise import gauss_markov, smooth
 
 STEP_M = 0.5
-EASING_M = 10.0  # a steering wheel is turned over about this distance
+EASING_M = 10.0  # distance over which the steering wheel is turned
 SLOPE_SD, SLOPE_LENGTH_M = 0.02, 200.0
 
 
@@ -59,7 +59,7 @@ def town(length_m: float, rng: np.random.Generator) -> Route:
 
 
 def _junction(rng: np.random.Generator) -> tuple[_Piece, ...]:
-    """What comes after a straight."""
+    """What follows a straight."""
     side = float(rng.choice((-1.0, 1.0)))
     kind = rng.choice(("corner", "bend", "roundabout", "crossing"), p=(0.5, 0.25, 0.1, 0.15))
     if kind == "corner":

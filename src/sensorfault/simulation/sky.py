@@ -1,4 +1,4 @@
-"""Satellites over a vehicle: where they are, and what a receiver without noise would measure."""
+"""Satellites above a vehicle: their positions, and what a receiver without noise measures."""
 
 from dataclasses import dataclass
 
@@ -16,10 +16,10 @@ USED_ABOVE = float(np.deg2rad(10.0))
 
 @dataclass(frozen=True)
 class Sky:
-    """S satellites at T epochs, as seen from the vehicle; no noise and no receiver clock in it."""
+    """S satellites at T epochs, seen from the vehicle, without noise and receiver clock."""
 
     names: tuple[str, ...]
-    range: Float[np.ndarray, "T S"]  # the way of the signal, with the turn of the earth meanwhile [m]
+    range: Float[np.ndarray, "T S"]  # path of the signal, with the rotation of the earth meanwhile [m]
     rate: Float[np.ndarray, "T S"]  # of that [m/s]
     position: Float[np.ndarray, "T S 3"]  # ECEF at transmission, in the frame of that time [m]
     velocity: Float[np.ndarray, "T S 3"]  # [m/s]
@@ -67,7 +67,7 @@ def overhead(
 def _way(
     ephemeris: kepler.Ephemeris, time: Float[np.ndarray, " T"], position: Float[np.ndarray, "T 3"]
 ) -> tuple[Float[np.ndarray, "T S"], Float[np.ndarray, "T S"]]:
-    """Length of the way [m] and time of transmission [s]: t = arrival - ρ(t) / c."""
+    """Length of the path [m] and time of transmission [s]: t = arrival - ρ(t) / c."""
     sent = time[:, None] - np.full(ephemeris.toe.shape, 0.075)
     for _ in range(_ROUNDS):
         way = np.asarray(sight.distance(position[:, None], kepler.position(ephemeris, sent)))

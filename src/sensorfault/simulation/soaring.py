@@ -1,4 +1,4 @@
-"""How an aircraft goes up and down: heights that a pilot might choose, and what he does to get there."""
+"""Climbs and descents of an aircraft: heights that a pilot might choose, and the controls to reach them."""
 
 from dataclasses import dataclass
 
@@ -9,18 +9,18 @@ from sensorfault.simulation.motion import GRAVITY, Motion
 from sensorfault.simulation.noise import gauss_markov, smooth
 
 HEIGHT, HEIGHT_SD, HEIGHT_S = 60.0, 20.0, 60.0  # above the start [m], and for how long one is kept [s]
-EASING_S = 16.0  # a change of height is begun and ended over about this time
-SPEED, SPEED_SD, SPEED_S = 8.0, 0.6, 20.0  # through the air, which is still [m/s]
+EASING_S = 16.0  # a change of height begins and ends within about this time
+SPEED, SPEED_SD, SPEED_S = 8.0, 0.6, 20.0  # airspeed; there is no wind [m/s]
 TURN_SD, TURN_S = 0.15, 12.0  # of the heading [rad/s]
 EDGE_S = 2.0
-RESPONSE_S = 1.5  # the climb follows throttle and elevator so late
+RESPONSE_S = 1.5  # lag of the climb behind throttle and elevator
 PITCH, PITCH_PER_CLIMB = 0.08, 0.09  # nose up in level flight [rad], and more of it for each m/s to climb
 HOVER, THROTTLE_PER_CLIMB = 0.5, 0.12  # throttle in level flight, and more of it for each m/s
 
 
 @dataclass(frozen=True)
 class Flight:
-    """The motion, and the pilot's part in it: throttle (0 to 1) and elevator (-1 to 1)."""
+    """The motion and the pilot's controls: throttle (0 to 1) and elevator (-1 to 1)."""
 
     motion: Motion
     throttle: Float[np.ndarray, " T"]
@@ -30,7 +30,7 @@ class Flight:
 def soar(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Flight:
     """A flight in still air, already aloft. Turns are flown coordinated."""
     step = float(time[1] - time[0])
-    edge = round(EDGE_S / step)  # flown, and cut off: at its ends a derivative is none
+    edge = round(EDGE_S / step)  # flown, then cut off: there is no derivative at the ends
     n = len(time) + 2 * edge
     wander = smooth(gauss_markov(rng, n, step, HEIGHT_S), round(EASING_S / step))
     up = HEIGHT + HEIGHT_SD * wander

@@ -1,4 +1,4 @@
-"""A random railway: curves with transitions and cant, gradients, stations, and what stands between it and the sky."""
+"""A random railway: curves with transitions and cant, gradients, stations, and what hides the sky."""
 
 from dataclasses import dataclass
 
@@ -16,14 +16,14 @@ STATIONS_M, FIRST_M = (3000.0, 6000.0), 2500.0  # from one stop to the next, to 
 PLATFORM_M = 400.0
 LIMITS_M_S = (80 / 3.6, 100 / 3.6, 120 / 3.6, 140 / 3.6)
 TUNNELS_M, CUTTINGS_M, OPEN_M = (200.0, 900.0), (300.0, 1200.0), (500.0, 2500.0)
-WALL = (float(np.deg2rad(20.0)), float(np.deg2rad(45.0)))  # how high the side of a cutting stands
+WALL = (float(np.deg2rad(20.0)), float(np.deg2rad(45.0)))  # elevation angle of the side of a cutting
 
 
 @dataclass(frozen=True)
 class Track:
-    """M points `STEP_M` apart. `cant`: by how much the left rail is higher [rad].
+    """M points `STEP_M` apart. `cant`: roll angle by which the left rail is higher [rad].
 
-    `left`, `right`: how high the ground stands square to the track [rad]; in a `tunnel` there is no sky.
+    `left`, `right`: elevation of the ground at right angles to the track [rad]; in a `tunnel` there is no sky.
     """
 
     route: Route
@@ -81,7 +81,7 @@ def _stations(length_m: float, rng: np.random.Generator) -> Float[np.ndarray, " 
 def _sky(
     s: Float[np.ndarray, " M"], stations: Float[np.ndarray, " n"], rng: np.random.Generator
 ) -> tuple[Bool[np.ndarray, " M"], Float[np.ndarray, " M"], Float[np.ndarray, " M"]]:
-    """Tunnels, and how high the ground stands left and right; stations lie in the open."""
+    """Tunnels, and the elevation of the ground left and right; stations are in the open."""
     tunnel = np.zeros(len(s), bool)
     left, right = np.zeros((2, len(s)))
     at, kinds = float(rng.uniform(*OPEN_M)), list[str]()

@@ -1,4 +1,4 @@
-"""A train ride that never was: what an inertial unit and a satellite receiver in it would have said."""
+"""A simulated train ride with an inertial unit and a satellite receiver."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,7 @@ TRAIN = Manner(
     roll_per_g=0.0,
     pitch_per_g=float(np.deg2rad(0.5)),
 )
-FASTEST = 40.0  # no ride gets further in a second [m]
+FASTEST = 40.0  # most distance in a second [m]
 
 
 @dataclass(frozen=True)
@@ -38,17 +38,17 @@ class Unit:
     accelerometer: Grade
 
 
-# Gyro 0.1 °/√h and 1 °/h, accelerometer 50 µg/√Hz and 0.1 mg; what is left when switched on 5 °/h and 1 mg.
+# Gyro 0.1 °/√h and 1 °/h, accelerometer 50 µg/√Hz and 0.1 mg; turn-on bias 5 °/h and 1 mg.
 TACTICAL = Unit(
     Grade(0.1 / 60 * DEGREE, 5 / 3600 * DEGREE, 1 / 3600 * DEGREE, 300.0, 1e-7, 400 * DEGREE),
     Grade(50e-6 * GRAVITY, 1e-3 * GRAVITY, 0.1e-3 * GRAVITY, 300.0, 1e-5, 10 * GRAVITY),
 )
-# Gyro 0.3 °/√h and 10 °/h, accelerometer 100 µg/√Hz and 0.2 mg; when switched on 0.1 °/s and 5 mg.
+# Gyro 0.3 °/√h and 10 °/h, accelerometer 100 µg/√Hz and 0.2 mg; turn-on bias 0.1 °/s and 5 mg.
 INDUSTRIAL = Unit(
     Grade(0.3 / 60 * DEGREE, 0.1 * DEGREE, 10 / 3600 * DEGREE, 300.0, 1e-6, 400 * DEGREE),
     Grade(100e-6 * GRAVITY, 5e-3 * GRAVITY, 0.2e-3 * GRAVITY, 300.0, 1e-4, 8 * GRAVITY),
 )
-"""Grades as Groves (2013), tables 4.1 and 4.3 bound them: tactical, and MEMS as industry uses it."""
+"""Grades after Groves (2013), tables 4.1 and 4.3: tactical, and industrial MEMS."""
 
 
 def ride(
@@ -64,13 +64,13 @@ def ride(
     """A ride from standstill with curves, stations, tunnels and cuttings at up to 140 km/h.
 
     Sensors: `gyro` and `accelerometer` (forward, right, down) at `imu_hz`, each row the mean since the one before; at
-    1 Hz those of 36 satellites that are above ten degrees and over the ground beside the track. The railway lies on the
-    plane that touches the earth at the start. The same seed gives the same ride; track, driving, sensors, clock and
-    pseudoranges draw from chances of their own. There is no vibration in it.
+    1 Hz those of 36 satellites that are above ten degrees and not hidden by the ground beside the track. The railway
+    lies on the plane that touches the earth at the start. The same seed gives the same ride; track, driving, sensors,
+    clock and pseudoranges have separate random generators. There is no vibration.
 
     Args:
         duration_s: how long [s].
-        seed: of all chances.
+        seed: of all random numbers.
         noise: of the pseudoranges, "gaussian" or "heavy" (`pseudorange.errors`).
         unit: the inertial unit.
         imu_hz: its rate.
@@ -116,8 +116,8 @@ def visible(
     Args:
         sky: at E epochs.
         heading: from east over north [rad].
-        track: what stands there.
-        gone: how far along it the train is [m].
+        track: the track with the ground beside it.
+        gone: distance of the train along the track [m].
     """
     along = np.searchsorted(track.route.distance, gone, side="right") - 1
     # how far to the right of the track's direction a satellite is, and how high the ground stands in that direction:

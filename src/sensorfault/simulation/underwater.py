@@ -1,4 +1,4 @@
-"""A mission under water that never was: a follower that reckons its way and ranges to its leaders."""
+"""A simulated mission under water: a follower with dead reckoning and ranges to its leaders."""
 
 from dataclasses import dataclass, replace
 
@@ -28,7 +28,7 @@ FOLLOWER = (
 
 @dataclass(frozen=True)
 class Path:
-    """How a follower goes: T ticks; north, east, down of the start [m]; forward and right [m/s]; heading [rad]."""
+    """Motion of a follower: T ticks; north, east, down of the start [m]; forward and right [m/s]; heading [rad]."""
 
     time: Float[np.ndarray, " T"]
     position: Float[np.ndarray, "T 3"]
@@ -38,7 +38,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Mission:
-    """What the sensors said and what was so; `truth` has a true value of every channel at every tick."""
+    """The measurements and the truth; `truth` has a true value of every channel at every tick."""
 
     log: Log
     truth: Log
@@ -51,10 +51,10 @@ def sail(
     ranging: Ranging = TWO,
     surface_s: float = 0.0,
 ) -> Mission:
-    """A follower that goes 1 to 2 m/s on winding courses, at 1 Hz; GPS at the first tick and up to `surface_s`.
+    """A follower at 1 to 2 m/s on winding courses, sampled at 1 Hz; GPS at the first tick and up to `surface_s`.
 
-    Sensors: `gps`, `dvl`, `compass`, `pressure` (depth) and `leader1`, `leader2`, ... with the range, where the leader
-    says it is, and its depth. The same seed gives the same mission.
+    Sensors: `gps`, `dvl`, `compass`, `pressure` (depth) and `leader1`, `leader2`, ... with the range, the leader's
+    reported position, and its depth. The same seed gives the same mission.
 
     Raises:
         ValueError: less than two ticks.
@@ -68,7 +68,7 @@ def sail(
 
 
 def wind(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Path:
-    """Courses that wander, at 1 to 2 m/s, some 20 m deep."""
+    """Winding courses at 1 to 2 m/s, about 20 m deep."""
     n = len(time)
     slowly = [smooth(gauss_markov(rng, n, 1.0, tau), 60) for tau in (120.0, 200.0, 60.0, 300.0)]
     forward = np.clip(1.5 + 0.3 * slowly[0], 1.0, 2.0)
@@ -81,7 +81,7 @@ def wind(time: Float[np.ndarray, " T"], rng: np.random.Generator) -> Path:
 
 
 def measure(path: Path, rng: np.random.Generator) -> Float[np.ndarray, "T 3"]:
-    """What Doppler log and compass say: forward, right [m/s], heading [rad]."""
+    """Measurements of Doppler log and compass: forward, right [m/s], heading [rad]."""
     n = len(path.time)
     bias = DVL_BIAS * rng.standard_normal(2)
     velocity = path.velocity * (1 + DVL_SCALE * rng.standard_normal()) + bias + DVL_WHITE * rng.standard_normal((n, 2))
@@ -98,7 +98,7 @@ def mission(
     surface_s: float = 0.0,
     name: str = "mission",
 ) -> Mission:
-    """The log of a follower on this path whose Doppler log and compass said that; the leaders are simulated."""
+    """The log of a follower on this path with these Doppler and compass measurements; the leaders are simulated."""
     received = hear(path.time, path.position, ranging, on_leaders)
     n = len(path.time)
     place = path.position[:, :2] + GPS_SD * on_sensors.standard_normal((n, 2))

@@ -23,12 +23,12 @@ LEVEL = np.array(
 )
 BOTH_WHEELS = np.array([0.0, 0.7, 0.0, 0.65, 0.0, 0.75])
 ONE_WHEEL = np.array([0.7, 0.0, 0.6, 0.0, -0.35, 0.0])
-IDLE = 0.2  # what the engine leaves of the highest band at standstill
+IDLE = 0.2  # share of the highest band at standstill, from the engine
 PATCH_SD, PATCH_S = 0.35, 2.0  # the road's roughness changes from patch to patch: log standard deviation, seconds
 
 
 def vibration(speed: Float[np.ndarray, " T"], rate_hz: float, rng: np.random.Generator) -> Float[np.ndarray, "T 6"]:
-    """Shaking of gyro x, y, z [rad/s] and accelerometer x, y, z [m/s^2], which grows with `speed` [m/s]."""
+    """Vibration of gyro x, y, z [rad/s] and accelerometer x, y, z [m/s^2], which grows with `speed` [m/s]."""
     n = len(speed)
     driven = np.exp(PATCH_SD * gauss_markov(rng, n, 1 / rate_hz, PATCH_S)) * speed / 10.0
     own = np.sqrt(1 - BOTH_WHEELS**2 - ONE_WHEEL**2)

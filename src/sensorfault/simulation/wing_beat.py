@@ -1,4 +1,4 @@
-"""Wings that beat: what they do to the sensors of the body that they carry."""
+"""Beating wings: their effect on the sensors of the body."""
 
 from dataclasses import dataclass
 
@@ -10,14 +10,14 @@ from sensorfault.simulation.noise import gauss_markov
 HARMONICS = (1.0, 0.4, 0.15)  # strength of the beat and its first two overtones
 HEAVE, SURGE = 3.0, 1.0  # acceleration of the body up and forward at half throttle [m/s^2]
 PITCHING = 0.3  # rate of the body's pitch [rad/s]
-PULSE_M = 0.4  # what the pressure of a stroke is taken for by a barometer [m]
-FASTER = 0.3  # share by which full throttle quickens the beat
-UNSTEADY, UNSTEADY_S = 0.02, 2.0  # share by which the beat wanders by itself, and for how long
+PULSE_M = 0.4  # height error of a barometer by the pressure of a stroke [m]
+FASTER = 0.3  # share by which full throttle raises the beat frequency
+UNSTEADY, UNSTEADY_S = 0.02, 2.0  # random variation of the beat frequency, and its correlation time
 
 
 @dataclass(frozen=True)
 class WingBeat:
-    """At T ticks: turns and accelerations of the body (x forward, y left, z up), and the barometer's error."""
+    """At T ticks: turn rates and accelerations of the body (x forward, y left, z up), and the barometer's error."""
 
     rate: Float[np.ndarray, "T 3"]  # [rad/s]
     force: Float[np.ndarray, "T 3"]  # [m/s^2]
@@ -27,10 +27,10 @@ class WingBeat:
 def wing_beat(
     time: Float[np.ndarray, " T"], throttle: Float[np.ndarray, " T"], beat_hz: float, rng: np.random.Generator
 ) -> WingBeat:
-    """Strokes of `beat_hz` at half throttle; 0: the wings are fixed, and nothing beats.
+    """Wing beat of `beat_hz` at half throttle; 0: fixed wings.
 
-    Strength goes with the throttle. The overtones stand at angles of their own to the beat, which differ from sensor to
-    sensor. A sensor that is read more slowly than twice the overtones shows them folded down, as a real one does.
+    The strength follows the throttle. The phases of the overtones differ from sensor to sensor. A sensor that samples
+    below twice the frequency of an overtone aliases it, as a real one does.
     """
     if not beat_hz:
         return WingBeat(np.zeros((len(time), 3)), np.zeros((len(time), 3)), np.zeros(len(time)))

@@ -9,6 +9,7 @@ import polars as pl
 
 from sensorfault.core.extras import require
 from sensorfault.logs.phrase import counted
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.mat_load import load
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
@@ -92,3 +93,6 @@ def _table(path: Path, vectors: dict[str, np.ndarray]) -> Source | None:
         f"{path.name}: {counted(len(others), 'vector')} of another length than {rows} left out: {', '.join(others)}.",
     )
     return Source(path, pl.DataFrame(columns), notes=said if others else ())
+
+
+FORMAT = Format("MATLAB", ("*.mat",), remembering(read_mat))
