@@ -15,6 +15,7 @@ from jaxtyping import Bool, Int
 from sensorfault.faults.check import check_fault, check_onset, columns_of, sigma_of
 from sensorfault.faults.fault import OFFSETS, Fault, FaultError
 from sensorfault.faults.shapes import SHAPES, Struck, spikes
+from sensorfault.logs.phrase import counted
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import to_si
 
@@ -30,6 +31,9 @@ class Injected:
     log: Log
     truth: tuple[Fault, ...]
     mask: Bool[np.ndarray, "T C"]
+
+    def __repr__(self) -> str:
+        return f"<Injected {counted(len(self.truth), 'fault')} in {self.log!r}>"
 
 
 def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:

@@ -8,6 +8,7 @@ import numpy as np
 import polars as pl
 from jaxtyping import Bool, Float, Int
 
+from sensorfault.logs import show
 from sensorfault.logs.units import from_si
 
 
@@ -81,8 +82,10 @@ class Log:
             )
 
     def __repr__(self) -> str:
-        sensors = ", ".join(sensor.name for sensor in self.sensors)
-        return f"Log({self.name!r}: {len(self)} rows in {self.duration_s:.1f} s, {sensors})"
+        return f"<Log {show.line(self)}>"
+
+    def _repr_html_(self) -> str:
+        return show.as_html(self)
 
     def __len__(self) -> int:
         return len(self.time)

@@ -1,14 +1,18 @@
 """What a fitted monitor found in a log."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int8
 
+from sensorfault.core.plotting import draw
 from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
+from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
+from sensorfault.runtime import show, tables
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Replayed
 
@@ -25,6 +29,9 @@ class Trace:
     score: Float[np.ndarray, " T"]
     limit: Float[np.ndarray, " T"]
 
+    def __repr__(self) -> str:
+        return f"<Trace {self.name} of {self.channel or 'all channels'}: {len(self.score)} rows>"
+
 
 @dataclass(frozen=True)
 class Detection:
@@ -33,6 +40,7 @@ class Detection:
     `motion` is the verdict on the vehicle's motion, where the method judges it.
     `watched` says which channels were judged; of the others only silence was noticed.
     `repaired` is `log.value` with stand-ins where a channel was rebuilt, NaN where there was nothing to say [SI].
+    `residual`: measured minus expected [SI; metres where a method compares positions], NaN where it was not tested.
     """
 
     log: Log
@@ -45,6 +53,33 @@ class Detection:
     repaired: Float[np.ndarray, "T C"]
     traces: tuple[Trace, ...]
     events: tuple[Event, ...]
+    residual: Float[np.ndarray, "T C"] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Detection {show.line(self)}>"
+
+    def _repr_html_(self) -> str:
+        return show.as_html(self)
+
+    def events_table(self, pandas: bool = False) -> Any:
+        """A row an event; see `runtime.tables.events_table`."""
+        return tables.events_table(self.events, pandas)
+
+    def verdicts_table(self, channels: bool = False, pandas: bool = False) -> Any:
+        """A row a tick, a verdict a sensor; see `runtime.tables.verdicts_table`."""
+        return tables.verdicts_table(self, channels, pandas)
+
+    def scores_table(self, pandas: bool = False) -> Any:
+        """A row a tick, a score and a limit a test; see `runtime.tables.scores_table`."""
+        return tables.scores_table(self, pandas)
+
+    def residuals_table(self, pandas: bool = False) -> Any:
+        """A row a tick, a residual a channel; see `runtime.tables.residuals_table`."""
+        return tables.residuals_table(self, pandas)
+
+    def plot(self, truth: Sequence[Fault] = (), dark: bool = False) -> Any:
+        """A Plotly figure of verdicts, signals and scores; see `sensorfault.plot`, which draws it."""
+        return draw(self, truth=truth, dark=dark)
 
     @property
     def received(self) -> "Detection":
@@ -61,6 +96,7 @@ class Detection:
             channel=self.channel[:, kept],
             sensor=self.sensor[:, mine],
             repaired=self.repaired[:, kept],
+            residual=None if self.residual is None else self.residual[:, kept],
         )
 
 
@@ -79,6 +115,7 @@ def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) 
         repaired=np.where(lost, np.nan, np.asarray(result.value)),
         traces=_traces(model, result),
         events=tuple(events),
+        residual=np.where(np.asarray(result.valid), np.asarray(result.residual), np.nan),
     )
 
 
