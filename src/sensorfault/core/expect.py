@@ -1,6 +1,16 @@
 """Arguments of the public functions: a wrong type is answered with one sentence that says what to give."""
 
-from typing import Any
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+LOG = "a Log, as sf.read returns it"
+MODEL = "a Model, as sf.fit or sf.load returns it"
+DETECTION = "a Detection, as sf.detect returns it"
+FAULTS = "a list of sf.Fault"
+EVENTS = "a list of sf.Event, as `events` of a Detection"
+
+Item = TypeVar("Item")
 
 
 def expect(value: object, kind: type | tuple[type, ...], where: str, give: str) -> None:
@@ -15,8 +25,35 @@ def expect(value: object, kind: type | tuple[type, ...], where: str, give: str) 
     Raises:
         TypeError: it is something else.
     """
-    if not isinstance(value, kind):
-        raise wrong(value, where, give)
+    if isinstance(value, kind):
+        return
+    if isinstance(getattr(value, "log", value), kind):
+        give = f"its .log, {give}"
+    raise wrong(value, where, give)
+
+
+def expect_all(values: object, kind: type[Item], where: str, give: str) -> list[Item]:
+    """The items of a list; refuse what is none, or holds something of another type.
+
+    Raises:
+        TypeError: it is no list, or one of its items is something else.
+    """
+    if isinstance(values, str | bytes) or not isinstance(values, Iterable):
+        raise wrong(values, where, give)
+    items = list(values)
+    for value in items:
+        if not isinstance(value, kind):
+            raise TypeError(f"{where} holds {called(value)}; give {give}.")
+    return items
+
+
+def expect_path(value: object, where: str) -> None:
+    """Refuse what is no path.
+
+    Raises:
+        TypeError: neither a str nor a Path.
+    """
+    expect(value, (str, Path), where, "the path of a file")
 
 
 def wrong(value: object, where: str, give: str) -> TypeError:
@@ -29,7 +66,7 @@ def called(value: Any) -> str:
     if value is None:
         return "None"
     name = type(value).__name__
-    article = "an" if name[0] in "AEIOUaeiou" else "a"
+    article = "an" if name[0] in "AEIOUaeiou" or name == "ndarray" else "a"
     if isinstance(value, str | int | float):
         text = repr(value)
         return f"{article} {name} ({text if len(text) <= 60 else text[:57] + '...'})"

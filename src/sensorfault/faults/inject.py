@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Int
 
+from sensorfault.core.expect import FAULTS, LOG, expect, expect_all
 from sensorfault.faults.check import check_fault, check_onset, columns_of, sigma_of
 from sensorfault.faults.fault import OFFSETS, Fault, FaultError
 from sensorfault.faults.shapes import SHAPES, Struck, spikes
@@ -42,9 +43,20 @@ def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:
     Faults on one channel act one after another, by onset, each on what the former left; the order of `faults` does not
     matter. Chance depends on `seed` and the fault alone, so a fault does the same whatever else is injected.
 
+    Args:
+        log: T rows, C channels.
+        faults: what is done to it, in seconds of the log's clock; magnitudes in the channels' own units.
+        seed: of all chance.
+
+    Returns:
+        The log with faults, the faults as they were done, and the entries (T x C) that they struck.
+
     Raises:
         FaultError: a fault that the log has no room for, or that makes no sense.
+        TypeError: something else than a log, or than faults.
     """
+    expect(log, Log, "inject: log", LOG)
+    faults = expect_all(faults, Fault, "inject: faults", FAULTS)
     value, fresh = log.value.copy(), log.fresh.copy()
     mask = np.zeros_like(fresh)
     truth = []

@@ -1,50 +1,63 @@
 """Read a log: its files, its vehicle file, one clock."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 
+from sensorfault.core.expect import expect, wrong
 from sensorfault.logs.clock import is_unix
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.guess import guess
+from sensorfault.logs.guess import guess, guess_source
+from sensorfault.logs.memory import PandasTable, Table, source_of
 from sensorfault.logs.one_clock import OneClock, Resample, put_on_one_clock
 from sensorfault.logs.place import Where, called_after, find_vehicle, pair_files
 from sensorfault.logs.readers.formats import read_tables, take_table
 from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.stream import Stream, read_stream
-from sensorfault.logs.table import Log
+from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
 
 GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
+GUESSED_TABLE = "No vehicle file: sensors, units and held values are guesses; give vehicle= to say what they are."
+_READABLE = "a file, a folder, a list of files, or a table: a Polars or pandas DataFrame, or a dict of columns"
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def read(
-    path: Where,
+    path: Where | Table,
     vehicle: str | Path | VehicleFile | None = None,
     resample: Resample = "hold",
     tell: Callable[[float], None] = lambda share: None,
 ) -> Log:
-    """Read a log.
+    """Read a log: files of a drive, or a table that is in memory already.
 
     A damaged file is read as far as it can be: `Log.damage` says where that ends.
 
     Args:
-        path: a file, a folder, or several files of one drive.
-        vehicle: what the columns are: a vehicle.toml, or what was read from one. None: `NAME.vehicle.toml` or
-            `vehicle.toml` beside the log; where there is none the columns are guessed, and a note says so.
+        path: a file, a folder, or several files of one drive; or a table: a Polars or pandas DataFrame, or a dict
+            of columns by name. A table's columns are named, and its time column found, as those of a CSV file.
+        vehicle: what the columns are, and their units: a vehicle.toml, or what was read from one. None:
+            `NAME.vehicle.toml` or `vehicle.toml` beside the log; where there is none, and of a table, the columns are
+            guessed, and a note says so.
         resample: how slower files come to the ticks of the fastest. "hold": a measurement is put on the first tick
             at or after its own time and the other ticks stay empty. "linear": drawn between measurements, which looks
             into the future and smooths faults over; for plots, and for papers that ask for it.
-        tell: hears how much of a large file has been read, 0 to 1.
+        tell: called with the share of a large file that has been read, 0 to 1.
 
     Returns:
-        The log in SI units on one clock.
+        The log on one clock: T rows, C channels, values in SI, NaN where nothing arrived.
 
     Raises:
         LogError: whatever keeps the log from being used, in one sentence.
+        TypeError: `path` or `vehicle` is of a type that is none of these.
     """
+    expect(vehicle, (str, Path, VehicleFile, type(None)), "read: vehicle", "the path of a vehicle.toml")
+    if isinstance(path, pl.DataFrame | Mapping | PandasTable):
+        return read_table(source_of(path), vehicle, resample)
+    _check(path)
     described = find_vehicle(path, vehicle)
     known = called_after(described, path) if described else guess(path, tell)
     notes = () if described else (GUESSED, *known.notes)
@@ -60,6 +73,35 @@ def read(
     said = [note for stream in streams for note in stream.notes]
     all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
     return log_of(known, streams, clock, all_notes, damage)
+
+
+def read_table(source: Source, vehicle: str | Path | VehicleFile | None, resample: Resample) -> Log:
+    """A log of one table that is in memory."""
+    described = vehicle if isinstance(vehicle, VehicleFile) or vehicle is None else VehicleFile.read(vehicle)
+    known = described or guess_source(source)
+    if len(known.files) > 1:
+        raise LogError(f"{known.name}: it describes {len(known.files)} files, but a table is one; describe one file.")
+    entry = known.files[0]
+    if described and entry.time is not None:
+        source = replace(source, unit=source.unit if source.time == entry.time else None)
+    stream = read_stream(source, entry, known.sensors)
+    clock = put_on_one_clock([stream], resample)
+    notes = () if described else (GUESSED_TABLE, *known.notes)
+    return log_of(known, [stream], clock, tuple(dict.fromkeys((*notes, *stream.notes, *clock.notes))), ())
+
+
+def _check(path: object) -> None:
+    """Refuse what names no file.
+
+    Raises:
+        TypeError: it is neither a path nor several.
+    """
+    if isinstance(path, str | Path):
+        return
+    if isinstance(path, Log):
+        raise wrong(path, "read: path", f"{_READABLE}; a Log has been read already")
+    if not isinstance(path, Sequence) or not all(isinstance(one, str | Path) for one in path):
+        raise wrong(path, "read: path", _READABLE)
 
 
 def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callable[[float], None]) -> list[Source]:

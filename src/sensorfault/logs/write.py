@@ -7,6 +7,7 @@ import numpy as np
 import polars as pl
 from jaxtyping import Bool
 
+from sensorfault.core.expect import LOG, expect, expect_path
 from sensorfault.core.files import appearing
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import fresh_rows
@@ -28,7 +29,10 @@ def write(log: Log, path: str | Path) -> Path:
 
     Raises:
         LogError: another suffix than .csv or .parquet, or the folder cannot be written to.
+        TypeError: something else than a log or a path.
     """
+    expect(log, Log, "write: log", LOG)
+    expect_path(path, "write: path")
     path = Path(path)
     frame, vehicle = as_table(log, path.name)
     writers: dict[str, Callable[[Path], object]] = {".csv": frame.write_csv, ".parquet": frame.write_parquet}

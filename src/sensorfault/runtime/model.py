@@ -38,10 +38,11 @@ class Model:
     framing: Framing | None = None
 
     def __repr__(self) -> str:
-        return f"<Model {show.model_line(self)}>"
+        return f"<Model {show.model_line(self.method, self.sensors, self.tick_s, self.summary)}>"
 
     def _repr_html_(self) -> str:
-        return show.model_html(self)
+        title = show.model_line(self.method, self.sensors, self.tick_s, self.summary)
+        return show.model_html(title, self.channels, self.sensors, self.watched, self.summary)
 
     @property
     def period_s(self) -> Float[np.ndarray, " C"]:

@@ -29,8 +29,13 @@ class Trace:
     score: Float[np.ndarray, " T"]
     limit: Float[np.ndarray, " T"]
 
+    @property
+    def title(self) -> str:
+        """`repeats of gyro.x`; the test's name alone where it examines all channels."""
+        return f"{self.name} of {self.channel}" if self.channel else self.name
+
     def __repr__(self) -> str:
-        return f"<Trace {self.name} of {self.channel or 'all channels'}: {len(self.score)} rows>"
+        return f"<Trace {self.title}: {len(self.score)} rows>"
 
 
 @dataclass(frozen=True)
@@ -56,30 +61,66 @@ class Detection:
     residual: Float[np.ndarray, "T C"] | None = None
 
     def __repr__(self) -> str:
-        return f"<Detection {show.line(self)}>"
+        return f"<Detection {show.line(self.log, self.method, self.events)}>"
 
     def _repr_html_(self) -> str:
-        return show.as_html(self)
+        return show.as_html(self.log, self.method, self.events, self.sensor)
 
     def events_table(self, pandas: bool = False) -> Any:
-        """A row an event; see `runtime.tables.events_table`."""
+        """One row an event, by onset: start_s, end_s [s], subject, sensor, channel, kind, peak_score, limit, method.
+
+        Null: an end where the event is ongoing, a sensor or channel where none can be named, a score where there is
+        none. A Polars DataFrame, or a pandas one where `pandas` asks for it.
+
+        Raises:
+            ImportError: pandas is asked for and not installed.
+        """
         return tables.events_table(self.events, pandas)
 
     def verdicts_table(self, channels: bool = False, pandas: bool = False) -> Any:
-        """A row a tick, a verdict a sensor; see `runtime.tables.verdicts_table`."""
-        return tables.verdicts_table(self, channels, pandas)
+        """One row a tick: time_s [s], then `ok`, `unknown` or `fault` of `sample`, `motion` and each sensor.
+
+        `channels`: also of each channel, `sensor.channel`. A fault of the sample with no sensor at fault means that
+        nobody could be named. The words are ordered (Polars Enum, pandas Categorical): ok < unknown < fault.
+
+        Raises:
+            ImportError: pandas is asked for and not installed.
+        """
+        verdicts = self.sample, self.motion, self.sensor, self.channel if channels else None
+        return tables.verdicts_table(self.log, *verdicts, pandas)
 
     def scores_table(self, pandas: bool = False) -> Any:
-        """A row a tick, a score and a limit a test; see `runtime.tables.scores_table`."""
-        return tables.scores_table(self, pandas)
+        """One row a tick: time_s [s], then two columns a test, `NAME of CHANNEL` and `NAME of CHANNEL, limit`.
+
+        A test that examines all channels is `NAME`. There is a fault where the score is above the limit; both have the
+        statistic's own unit. Null where the test had nothing to test. Tests that never tested anything are left out.
+
+        Raises:
+            ImportError: pandas is asked for and not installed.
+        """
+        return tables.scores_table(self.log, [(test.title, test.score, test.limit) for test in self.traces], pandas)
 
     def residuals_table(self, pandas: bool = False) -> Any:
-        """A row a tick, a residual a channel; see `runtime.tables.residuals_table`."""
-        return tables.residuals_table(self, pandas)
+        """One row a tick: time_s [s], then measured minus expected of each channel, `sensor.channel`.
 
-    def plot(self, truth: Sequence[Fault] = (), dark: bool = False) -> Any:
+        In SI, as the method compares them: metres for positions given in degrees. Null where the residual was not
+        tested: no new measurement, not warmed up, or a channel that the method does not judge.
+
+        Raises:
+            LogError: the detection keeps no residuals.
+            ImportError: pandas is asked for and not installed.
+        """
+        return tables.residuals_table(self.log, self.residual, pandas)
+
+    def plot(
+        self,
+        truth: Sequence[Fault] = (),
+        dark: bool = False,
+        sensors: Sequence[str] | None = None,
+        scores: bool = True,
+    ) -> Any:
         """A Plotly figure of verdicts, signals and scores; see `sensorfault.plot`, which draws it."""
-        return draw(self, truth=truth, dark=dark)
+        return draw(self, truth=truth, dark=dark, sensors=sensors, scores=scores)
 
     @property
     def received(self) -> "Detection":

@@ -1,112 +1,74 @@
-"""A detection as tables: Polars data frames, or pandas ones where that is installed.
-
-Every table of ticks begins with `time_s`, the log's clock [s]. Null (NaN in pandas) stands where there was nothing to
-test. Residuals and scores are as the method computed them: SI, not the channels' own units.
-"""
+"""A detection as tables: Polars data frames, or pandas ones where that is installed. Null is NaN in pandas."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import polars as pl
+from jaxtyping import Float, Int8
 
 from sensorfault.core.types import VERDICTS
 from sensorfault.events.event import Event
 from sensorfault.events.export.tables import frame
-from sensorfault.logs.table import LogError
-
-if TYPE_CHECKING:
-    from sensorfault.runtime.result import Detection
+from sensorfault.logs.table import Log, LogError
 
 _VERDICT = pl.Enum(VERDICTS)
+Test = tuple[str, Float[np.ndarray, " T"], Float[np.ndarray, " T"]]  # name, score, limit
 
 
-def events_table(events: Sequence[Event], pandas: bool = False) -> Any:
-    """One row an event, by onset: start_s, end_s [s], subject, sensor, channel, kind, peak_score, limit, method.
-
-    Null: an end where the event is ongoing, a sensor or channel where none can be named, a score where there is none.
-
-    Args:
-        events: what a detection found.
-        pandas: give a pandas DataFrame instead of a Polars one.
-
-    Raises:
-        ImportError: pandas is asked for and not installed.
-    """
+def events_table(events: Sequence[Event], pandas: bool) -> Any:
+    """One row an event."""
     return _given(frame(events), pandas)
 
 
-def verdicts_table(found: "Detection", channels: bool = False, pandas: bool = False) -> Any:
-    """One row a tick: `ok`, `unknown` or `fault` of the whole `sample`, of the vehicle's `motion` and of each sensor.
-
-    A fault of the sample with no sensor at fault means that nobody could be named. The words are ordered
-    (Polars Enum, pandas Categorical): ok < unknown < fault.
-
-    Args:
-        found: the detection, T ticks.
-        channels: also one column a channel, `sensor.channel`.
-        pandas: give a pandas DataFrame instead of a Polars one.
-
-    Raises:
-        ImportError: pandas is asked for and not installed.
-    """
-    pairs = [("sample", found.sample), ("motion", found.motion)]
-    pairs += [(sensor.name, found.sensor[:, i]) for i, sensor in enumerate(found.log.sensors)]
-    if channels:
-        pairs += [(channel.path, found.channel[:, i]) for i, channel in enumerate(found.log.channels)]
+def verdicts_table(
+    log: Log,
+    sample: Int8[np.ndarray, " T"],
+    motion: Int8[np.ndarray, " T"],
+    sensor: Int8[np.ndarray, "T S"],
+    channel: Int8[np.ndarray, "T C"] | None,
+    pandas: bool,
+) -> Any:
+    """One row a tick, verdicts as ordered words; without channels where they are None."""
+    pairs = [("sample", sample), ("motion", motion)]
+    pairs += [(one.name, sensor[:, i]) for i, one in enumerate(log.sensors)]
+    if channel is not None:
+        pairs += [(one.path, channel[:, i]) for i, one in enumerate(log.channels)]
     words = np.array(VERDICTS)
-    return _given(_ticks(found, ((name, pl.Series(words[code], dtype=_VERDICT)) for name, code in pairs)), pandas)
+    return _given(_ticks(log, [(name, pl.Series(words[code], dtype=_VERDICT)) for name, code in pairs]), pandas)
 
 
-def scores_table(found: "Detection", pandas: bool = False) -> Any:
-    """One row a tick, two columns a test: `NAME of CHANNEL` is its score, `NAME of CHANNEL, limit` its limit.
-
-    A test that examines all channels is `NAME`. A fault is where the score is above the limit; both have the
-    statistic's own unit. Null where the test had nothing to test. Tests that never tested anything are left out.
-
-    Args:
-        found: the detection, T ticks.
-        pandas: give a pandas DataFrame instead of a Polars one.
-
-    Raises:
-        ImportError: pandas is asked for and not installed.
-    """
-    pairs = []
-    for trace in found.traces:
-        name = f"{trace.name} of {trace.channel}" if trace.channel else trace.name
-        pairs += [(name, trace.score), (f"{name}, limit", trace.limit)]
-    return _given(_ticks(found, pairs), pandas)
+def scores_table(log: Log, tests: Iterable[Test], pandas: bool) -> Any:
+    """One row a tick, two columns a test."""
+    pairs = [pair for name, score, limit in tests for pair in ((name, score), (f"{name}, limit", limit))]
+    return _given(_ticks(log, [(name, _numbers(values)) for name, values in pairs]), pandas)
 
 
-def residuals_table(found: "Detection", pandas: bool = False) -> Any:
-    """One row a tick, one column a channel, `sensor.channel`: measured minus expected.
-
-    In SI, as the method compares them: metres for positions given in degrees. Null where the residual was not tested:
-    no new measurement, not warmed up, or a channel that the method does not judge.
-
-    Args:
-        found: the detection, T ticks, C channels.
-        pandas: give a pandas DataFrame instead of a Polars one.
+def residuals_table(log: Log, residual: Float[np.ndarray, "T C"] | None, pandas: bool) -> Any:
+    """One row a tick, one column a channel.
 
     Raises:
-        LogError: the detection keeps no residuals.
-        ImportError: pandas is asked for and not installed.
+        LogError: there are no residuals.
     """
-    if found.residual is None:
-        raise LogError(f"{found.log.name}: this detection keeps no residuals; run sf.detect on the log as a whole.")
-    residual = found.residual
-    return _given(_ticks(found, ((c.path, residual[:, i]) for i, c in enumerate(found.log.channels))), pandas)
+    if residual is None:
+        raise LogError(f"{log.name}: this detection keeps no residuals; run sf.detect on the log as a whole.")
+    columns = [(channel.path, _numbers(residual[:, i])) for i, channel in enumerate(log.channels)]
+    return _given(_ticks(log, columns), pandas)
 
 
-def _ticks(found: "Detection", columns: Iterable[tuple[str, Any]]) -> pl.DataFrame:
-    """A table with the log's times; a name that stands there already gets a number."""
-    named: dict[str, pl.Series] = {"time_s": pl.Series(found.log.time)}
+def _numbers(values: np.ndarray) -> pl.Series:
+    return pl.Series(values, nan_to_null=True)
+
+
+def _ticks(log: Log, columns: Iterable[tuple[str, pl.Series]]) -> pl.DataFrame:
+    """A table with the log's times; a name that is taken gets a number."""
+    named = {"time_s": pl.Series(log.time)}
     for name, values in columns:
         count, unique = 1, name
         while unique in named:
             count += 1
             unique = f"{name} ({count})"
-        named[unique] = pl.Series(values, nan_to_null=True) if isinstance(values, np.ndarray) else values
+        named[unique] = values
     return pl.DataFrame(named)
 
 
@@ -115,7 +77,11 @@ def _given(table: pl.DataFrame, pandas: bool) -> Any:
 
 
 def _to_pandas(table: pl.DataFrame) -> Any:
-    """Column by column: Polars' own way needs pyarrow besides."""
+    """Column by column: Polars' own way needs pyarrow besides.
+
+    Raises:
+        ImportError: pandas is not installed.
+    """
     try:
         import pandas as pd
     except ImportError:

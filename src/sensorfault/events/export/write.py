@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
+from sensorfault.core.expect import EVENTS, LOG, expect, expect_all, expect_path
 from sensorfault.core.files import appearing
 from sensorfault.events.event import Event
 from sensorfault.events.export import bags, mcap, tables
@@ -49,7 +50,11 @@ def write_events(events: Sequence[Event], log: Log, path: str | Path, source: Pa
 
     Raises:
         LogError: as `check` says, or the folder cannot be written to.
+        TypeError: something else than events, a log or a path.
     """
+    expect_all(events, Event, "write_events: events", EVENTS)
+    expect(log, Log, "write_events: log", LOG)
+    expect_path(path, "write_events: path")
     path = Path(path)
     check(path)
     writer = KINDS[path.suffix.lower()]
