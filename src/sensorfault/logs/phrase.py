@@ -18,3 +18,13 @@ def listed(names: Sequence[str], most: int = 8) -> str:
     if len(names) <= most:
         return ", ".join(names)
     return f"{', '.join(names[:most])} and {len(names) - most} others"
+
+
+def sensors_named(names: Sequence[str]) -> str:
+    """`sensors gyro, gnss`; of many the first."""
+    return f"{'sensor' if len(names) == 1 else 'sensors'} {listed(names) or 'none'}"
+
+
+def with_unit(name: str, unit: str) -> str:
+    """`x [deg/s]`, or the name alone where there is no unit."""
+    return f"{name} [{unit}]" if unit else name

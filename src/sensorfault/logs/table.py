@@ -10,8 +10,7 @@ from jaxtyping import Bool, Float, Int
 
 from sensorfault.core import html
 from sensorfault.core.clock import clock
-from sensorfault.logs.phrase import counted, listed
-from sensorfault.logs.show import channel_words, sensor_words
+from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
 from sensorfault.logs.units import from_si
 
 
@@ -91,7 +90,7 @@ class Log:
         """`'drive': 5000 rows in 1:40.00 at 50 Hz, sensors gyro, accelerometer, gnss`."""
         rate = f" at {1 / self.period_s:.3g} Hz" if len(self) > 1 else ""
         rows = f"{counted(len(self), 'row')} in {clock(self.duration_s)}{rate}"
-        return f"{self.name!r}: {rows}, {sensor_words(self.sensors)}"
+        return f"{self.name!r}: {rows}, {sensors_named([sensor.name for sensor in self.sensors])}"
 
     def _repr_html_(self) -> str:
         """One row a sensor: channels with their units, how often it measures, the share of it that arrived."""
@@ -101,7 +100,7 @@ class Log:
             due = self.period_s / sensor.period_s if sensor.period_s > self.period_s else 1.0  # measurements a tick
             share = min(1.0, float(self.fresh[:, columns].mean()) / due) if len(self) else 0.0
             every = f"{sensor.period_s:.3g} s" if np.isfinite(sensor.period_s) else ""
-            channels = listed([channel_words(self.channels[i]) for i in columns])
+            channels = listed([with_unit(self.channels[i].name, self.channels[i].unit) for i in columns])
             rows.append((sensor.name, channels, every, "yes" if sensor.held else "", f"{share:.0%}"))
         sensors = html.table(("sensor", "channels", "every", "held", "received"), rows)
         notes = [html.table(("notes",), [(note,) for note in self.notes])] if self.notes else []

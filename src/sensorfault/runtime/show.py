@@ -11,8 +11,7 @@ from sensorfault.core import html
 from sensorfault.core.clock import clock
 from sensorfault.core.types import VERDICTS
 from sensorfault.events.event import EVENT_HEADS, Event, event_cells
-from sensorfault.logs.phrase import counted, listed
-from sensorfault.logs.show import channel_words, sensor_words
+from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
 from sensorfault.logs.table import Channel, Log, Sensor
 
 
@@ -21,7 +20,8 @@ def line(log: Log, method: str, events: Sequence[Event]) -> str:
     kinds = Counter(event.kind for event in events)
     by_kind = f" ({', '.join(f'{count} {kind}' for kind, count in kinds.most_common())})" if kinds else ""
     found = f"{counted(len(events), 'event')}{by_kind}"
-    return f"{log.name!r}: {found} in {clock(log.duration_s)} by {method}, {sensor_words(log.sensors)}"
+    sensors = sensors_named([sensor.name for sensor in log.sensors])
+    return f"{log.name!r}: {found} in {clock(log.duration_s)} by {method}, {sensors}"
 
 
 def as_html(log: Log, method: str, events: Sequence[Event], verdict: Int8[np.ndarray, "T S"]) -> str:
@@ -40,7 +40,7 @@ def model_line(method: str, sensors: Sequence[Sensor], tick_s: float, summary: M
     name, seconds = summary.get("training_log"), summary.get("training_s")
     where = f" on {name!r}" if name else ""
     time = f" ({clock(seconds)})" if isinstance(seconds, float) else ""
-    return f"{method} fitted{where}{time} at {1 / tick_s:.3g} Hz, {sensor_words(sensors)}"
+    return f"{method} fitted{where}{time} at {1 / tick_s:.3g} Hz, {sensors_named([sensor.name for sensor in sensors])}"
 
 
 def model_html(
@@ -56,7 +56,7 @@ def model_html(
         words: dict[bool, list[str]] = {True: [], False: []}
         for channel, judged in zip(channels, watched, strict=True):
             if channel.sensor == sensor.name:
-                words[bool(judged)].append(channel_words(channel))
+                words[bool(judged)].append(with_unit(channel.name, channel.unit))
         rows.append((sensor.name, listed(words[True]), listed(words[False])))
     tables = [html.table(("sensor", "judged", "only checked for dropouts"), rows)]
     if (alarms := summary.get("held_out_alarms")) is not None:
