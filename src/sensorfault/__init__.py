@@ -5,94 +5,51 @@
 >>> model = sf.fit(log.between(end_s=120))  # taken as healthy
 >>> found = sf.detect(model, log.between(120))
 >>> for event in found.events:
-...     print(event)
+...     print(event)  # 2:10.00-2:12.98 frozen of gyro.y (peak 149, limit 4)
+>>> found.verdicts_table(), found.scores_table()  # polars; pandas=True for pandas
+>>> found.plot()  # a plotly figure
 >>> sf.save(model, "car.sensorfault")
 >>> live = sf.Live(sf.load("car.sensorfault"))
 >>> now = live.push(120.02, values)  # one sample in SI, one verdict
 >>> now.sample == sf.FAULT, live.open()
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import ast as _ast
+from importlib import import_module as _import_module
+from pathlib import Path as _Path
+from typing import Any as _Any
 
-if TYPE_CHECKING:
-    from sensorfault.core.monitor import Monitor
-    from sensorfault.core.types import FAULT, OK, UNKNOWN, VERDICTS
-    from sensorfault.evaluation.campaign import campaign
-    from sensorfault.evaluation.judge import judge
-    from sensorfault.events.event import Event
-    from sensorfault.events.export import write_events
-    from sensorfault.faults.fault import Fault
-    from sensorfault.faults.inject import inject
-    from sensorfault.logs import Log, LogError, read, write
-    from sensorfault.methods.catalog import METHODS
-    from sensorfault.methods.fit import fit
-    from sensorfault.report.page import write_page
-    from sensorfault.runtime.detect import Live, detect
-    from sensorfault.runtime.model import Model
-    from sensorfault.runtime.result import Detection
-    from sensorfault.runtime.store import load, save
-    from sensorfault.simulation.road import drive
+from sensorfault.core import plotting as _plotting
+
+
+def _homes() -> dict[str, str]:
+    """The module of each public name, from the one list that type checkers read, too."""
+    stub = _ast.parse(_Path(__file__).with_name("__init__.pyi").read_text("utf-8"))
+    lines = [line for line in stub.body if isinstance(line, _ast.ImportFrom)]
+    return {alias.asname or alias.name: line.module or "" for line in lines for alias in line.names}
+
 
 # JAX and the readers are slow to import: each name brings its module along when it is first asked for.
-_HOME = {
-    "FAULT": "core.types",
-    "OK": "core.types",
-    "UNKNOWN": "core.types",
-    "VERDICTS": "core.types",
-    "Detection": "runtime.result",
-    "Event": "events.event",
-    "Fault": "faults.fault",
-    "Live": "runtime.detect",
-    "Log": "logs",
-    "LogError": "logs",
-    "METHODS": "methods.catalog",
-    "Model": "runtime.model",
-    "Monitor": "core.monitor",
-    "campaign": "evaluation.campaign",
-    "detect": "runtime.detect",
-    "drive": "simulation.road",
-    "fit": "methods.fit",
-    "inject": "faults.inject",
-    "judge": "evaluation.judge",
-    "load": "runtime.store",
-    "read": "logs",
-    "save": "runtime.store",
-    "write": "logs",
-    "write_events": "events.export",
-    "write_page": "report.page",
-}
-
-__all__ = [
-    "FAULT",
-    "METHODS",
-    "OK",
-    "UNKNOWN",
-    "VERDICTS",
-    "Detection",
-    "Event",
-    "Fault",
-    "Live",
-    "Log",
-    "LogError",
-    "Model",
-    "Monitor",
-    "campaign",
-    "detect",
-    "drive",
-    "fit",
-    "inject",
-    "judge",
-    "load",
-    "read",
-    "save",
-    "write",
-    "write_events",
-    "write_page",
-]
+_HOMES = _homes()
+__all__ = sorted(_HOMES)
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
+def __getattr__(name: str) -> _Any:
+    if name == "__version__":
+        return _version()
+    if name not in _HOMES:
         raise AttributeError(f"sensorfault has no '{name}'; it has {', '.join(__all__)}")
-    return getattr(import_module(f"sensorfault.{_HOME[name]}"), name)
+    return getattr(_import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in (*globals(), "__version__") if name.startswith("__"))]
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("sensorfault")
+
+
+_plotting.draw_with(lambda result, **options: __getattr__("plot")(result, **options))  # `Detection.plot()`

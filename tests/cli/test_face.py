@@ -156,12 +156,3 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     said = done.stdout.splitlines()
     assert any(line.split()[1:] == ["gyro", "y", "frozen"] for line in said)
     assert said[-1].split()[0] in ("ok", "unknown", "fault")
-
-
-def test_every_public_name_is_there() -> None:
-    import sensorfault as sf
-
-    assert all(getattr(sf, name) is not None for name in sf.__all__)
-    assert set(sf.__all__) == set(sf._HOME)
-    with pytest.raises(AttributeError, match="has no 'nonsense'"):
-        sf.nonsense  # noqa: B018

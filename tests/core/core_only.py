@@ -2,7 +2,8 @@
 
     python core_only.py MODEL [LIBRARY ...]
 
-It writes to the folder that it runs in. MODEL: where the model of `healthy()` is, or will be put if there is none. LIBRARY: imports that are made to fail.
+It writes to the folder that it runs in. MODEL: where the model of `healthy()` is, or will be put if there is none.
+LIBRARY: imports that are made to fail.
 """
 
 import contextlib

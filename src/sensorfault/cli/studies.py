@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Protocol, runtime_checkable
 
+from sensorfault.core.extras import MissingLibrary, sentence_of_missing
 from sensorfault.logs.table import LogError
 
 GROUP = "sensorfault.studies"
 
 
+@runtime_checkable
 class Printed(Protocol):
     """A table as text. `numbers`: the columns that hold numbers."""
 
@@ -25,6 +27,7 @@ class Printed(Protocol):
     def numbers(self) -> Sequence[str]: ...
 
 
+@runtime_checkable
 class Reproduction(Protocol):
     """What a study found: sentences, numbers for JSON, tables, and a page of HTML (`facts`: what it ran on)."""
 
@@ -35,6 +38,7 @@ class Reproduction(Protocol):
     def page(self, facts: str) -> str: ...
 
 
+@runtime_checkable
 @runtime_checkable
 class Study(Protocol):
     """The experiments of one paper. `tell` is called with what is being done and the share that is done, 0 to 1."""
@@ -67,12 +71,24 @@ def installed() -> dict[str, Study]:
     return found
 
 
+def _missing(error: BaseException | None) -> str | None:
+    """The sentence, where a library of an extra is what an import or its cause lacks."""
+    while error is not None:
+        if isinstance(error, ImportError) and (sentence := sentence_of_missing(error, "the study")) is not None:
+            return sentence
+        error = error.__cause__
+    return None
+
+
 def _given(point: EntryPoint) -> list[Study]:
     try:
         given = point.load()
         given = given() if callable(given) and not isinstance(given, Study) else given
         studies = [given] if isinstance(given, Study) else list(given)
     except Exception as error:  # whatever another package does
+        missing = _missing(error)
+        if missing is not None:
+            raise MissingLibrary(missing) from error
         reason = str(error) if isinstance(error, ImportError) else f"{type(error).__name__}: {error}"
         raise LogError(f"{_words(point)} cannot be loaded ({reason}); repair or uninstall its package.") from error
     wrong = next((one for one in studies if not isinstance(one, Study)), None)

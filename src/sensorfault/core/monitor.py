@@ -101,6 +101,10 @@ class Monitor(eqx.Module):
     together: bool = eqx.field(static=True, default=True)
     least: int = eqx.field(static=True, default=0)
 
+    def __repr__(self) -> str:
+        tests = ", ".join(type(branch.statistic).__name__ for branch in self.branches)
+        return f"<Monitor {len(self.owner)} channels: {type(self.residual).__name__} judged by {tests}>"
+
     def init(self) -> MonitorState:
         """State before the first sample."""
         channels = len(self.owner)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sensorfault.core.expect import LOG, MODEL, expect
 from sensorfault.evaluation.cells import Cell, tabulate
 from sensorfault.evaluation.judge import Judgement, Outcome, judge
 from sensorfault.evaluation.ranking import auc, auc_pr
@@ -64,7 +65,10 @@ def campaign(
 
     Raises:
         LogError: the log is too short for one fault, or there is no such kind of fault.
+        TypeError: something else than a model or a log.
     """
+    expect(model, Model, "campaign: model", MODEL)
+    expect(log, Log, "campaign: log", LOG)
     if unknown := [kind for kind in kinds if kind not in MAGNITUDES]:
         raise LogError(f"fault kind '{unknown[0]}' is unknown; take some of {', '.join(MAGNITUDES)}.")
     if not duration_s > 0:

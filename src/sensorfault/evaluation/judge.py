@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sensorfault.core.expect import DETECTION, FAULTS, LOG, expect, expect_all
 from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
@@ -61,7 +62,13 @@ def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None
 
     Causal and on events: an event belongs to a fault if it begins between the fault's onset and its end (plus GRACE_S);
     one that was already going on does not count as finding it. No point adjustment.
+
+    Raises:
+        TypeError: something else than a detection, faults or a log.
     """
+    expect(detection, Detection, "judge: detection", DETECTION)
+    expect_all(truth, Fault, "judge: truth", FAULTS)
+    expect(clean, (Log, type(None)), "judge: clean", LOG)
     events = detection.events
     outcomes = tuple(_outcome(fault, detection, clean) for fault in truth)
     explained = {id(event) for fault in truth for event in _of(fault, events, detection.log.period_s)}

@@ -3,6 +3,9 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from sensorfault.core import html
+from sensorfault.core.clock import clock
+
 KINDS = ("spike", "offset", "drift", "frozen", "missing", "noise", "scale", "delay")
 OFFSETS = ("spike", "offset", "drift", "noise")  # magnitude in the channel's unit, or in sigmas
 SIZELESS = ("frozen", "missing")  # no magnitude
@@ -52,3 +55,22 @@ class Fault:
     def as_dict(self) -> dict[str, Any]:
         """For JSON; the keys are the fields."""
         return asdict(self)
+
+    @property
+    def size(self) -> str:
+        """The magnitude as a person writes it, empty for a kind without one."""
+        if self.kind in SIZELESS:
+            return ""
+        unit = {"scale": "x", "delay": " s"}.get(self.kind, " sigma" if self.sigmas else "")
+        return f"{self.magnitude:g}{unit}"
+
+    def __str__(self) -> str:
+        span = clock(self.start_s) + (f"-{clock(self.end_s)}" if self.duration_s else "")
+        return f"{span} {self.kind} of {self.where}" + (f" ({self.size})" if self.size else "")
+
+    def __repr__(self) -> str:
+        return f"<Fault {self}>"
+
+    def _repr_html_(self) -> str:
+        row = clock(self.start_s), clock(self.end_s), self.where, self.kind, self.size
+        return html.table(("start", "end", "where", "kind", "size"), [row])

@@ -12,9 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Int
 
+from sensorfault.core.expect import FAULTS, LOG, expect, expect_all
 from sensorfault.faults.check import check_fault, check_onset, columns_of, sigma_of
 from sensorfault.faults.fault import OFFSETS, Fault, FaultError
 from sensorfault.faults.shapes import SHAPES, Struck, spikes
+from sensorfault.logs.phrase import counted
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import to_si
 
@@ -31,6 +33,9 @@ class Injected:
     truth: tuple[Fault, ...]
     mask: Bool[np.ndarray, "T C"]
 
+    def __repr__(self) -> str:
+        return f"<Injected {counted(len(self.truth), 'fault')} in {self.log!r}>"
+
 
 def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:
     """Inject faults into a log; the given log is not changed.
@@ -38,9 +43,20 @@ def inject(log: Log, faults: Iterable[Fault], seed: int = 0) -> Injected:
     Several faults on one channel are applied by onset, each to the result of the one before; the order of `faults` does
     not matter. Random numbers depend on `seed` and the fault alone, not on the other faults.
 
+    Args:
+        log: T rows, C channels.
+        faults: what is done to it, in seconds of the log's clock; magnitudes in the channels' own units.
+        seed: of all chance.
+
+    Returns:
+        The log with faults, the faults as they were done, and the entries (T x C) that they struck.
+
     Raises:
         FaultError: a fault that does not fit the log, or is no fault.
+        TypeError: something else than a log, or than faults.
     """
+    expect(log, Log, "inject: log", LOG)
+    faults = expect_all(faults, Fault, "inject: faults", FAULTS)
     value, fresh = log.value.copy(), log.fresh.copy()
     mask = np.zeros_like(fresh)
     truth = []

@@ -1,6 +1,7 @@
 """The work of `read`: a log's files, its vehicle file, one clock."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,16 +9,18 @@ import numpy as np
 from sensorfault.logs.clock import is_unix
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.guess import guess
+from sensorfault.logs.guess.vehicle import guess_source
 from sensorfault.logs.one_clock import OneClock, put_on_one_clock
 from sensorfault.logs.place import Where, called_after, find_vehicle, pair_files
 from sensorfault.logs.readers.formats import read_tables, take_table
 from sensorfault.logs.readers.source import Ask, Source
 from sensorfault.logs.resample import Resample
 from sensorfault.logs.stream import Stream, read_stream
-from sensorfault.logs.table import Log
+from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
 
 GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
+GUESSED_TABLE = "No vehicle file: sensors, units and held values are guesses; give vehicle= to say what they are."
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
@@ -40,6 +43,21 @@ def read_files(
     said = [note for stream in streams for note in stream.notes]
     all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
     return log_of(known, streams, clock, all_notes, damage)
+
+
+def read_table(source: Source, vehicle: str | Path | VehicleFile | None, resample: Resample) -> Log:
+    """A log of one table that is in memory."""
+    described = vehicle if isinstance(vehicle, VehicleFile) or vehicle is None else VehicleFile.read(vehicle)
+    known = described or guess_source(source)
+    if len(known.files) > 1:
+        raise LogError(f"{known.name}: it describes {len(known.files)} files, but a table is one; describe one file.")
+    entry = known.files[0]
+    if described and entry.time is not None:
+        source = replace(source, unit=source.unit if source.time == entry.time else None)
+    stream = read_stream(source, entry, known.sensors)
+    clock = put_on_one_clock([stream], resample)
+    notes = () if described else (GUESSED_TABLE, *known.notes)
+    return log_of(known, [stream], clock, tuple(dict.fromkeys((*notes, *stream.notes, *clock.notes))), ())
 
 
 def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callable[[float], None]) -> list[Source]:

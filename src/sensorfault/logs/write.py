@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Bool
 
+from sensorfault.core.expect import LOG, expect, expect_path
 from sensorfault.core.extras import require
 from sensorfault.core.files import appearing
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
@@ -33,7 +34,10 @@ def write(log: Log, path: str | Path) -> Path:
     Raises:
         LogError: another suffix than .csv or .parquet, or the folder cannot be written to.
         MissingLibrary: polars is not installed.
+        TypeError: something else than a log or a path.
     """
+    expect(log, Log, "write: log", LOG)
+    expect_path(path, "write: path")
     path = Path(path)
     require(f"{path}: writing it", "polars")
     frame, vehicle = as_table(log, path.name)

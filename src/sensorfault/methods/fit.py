@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sensorfault.calibration.data_screening import leave_out
+from sensorfault.core.expect import LOG, expect
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import DEFAULT, recipe
 from sensorfault.numerics.poisson import rate_below
@@ -33,9 +34,20 @@ def fit(
     `progress` is told what is being done. `checkpoint`: a file that a training by epochs writes after each, and goes on
     from if it is there.
 
+    Args:
+        log: T rows, C channels in SI on one clock, taken as healthy.
+        method: a name of `METHODS`.
+        held_out: share of the log.
+        seed: of all chance in the fit; the same seed gives the same model.
+        progress: called with a sentence.
+        checkpoint: a file.
+
     Raises:
         LogError: an unknown method, a log that it cannot be fitted on, or a checkpoint of another fit.
+        TypeError: something else than a log, or than the name of a method.
     """
+    expect(log, Log, "fit: log", LOG)
+    expect(method, str, "fit: method", "the name of one, as in sf.METHODS")
     if not 0 <= held_out <= 0.9:
         raise LogError(f"held_out is {held_out:g}; give the share of the log to keep for judging, 0 to 0.9.")
     if len(log) < 2:

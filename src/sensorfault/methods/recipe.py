@@ -25,6 +25,9 @@ class Recipe:
     needs: Callable[[Log], object] | None = None
     parts: tuple["Recipe", ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<Recipe {self.name}: {self.title}>"
+
     def lacks(self, log: Log) -> str:
         """What keeps the method from running on the log, as far as that shows without fitting; else empty."""
         if self.parts:

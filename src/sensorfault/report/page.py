@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
+from sensorfault.core.expect import DETECTION, FAULTS, expect, expect_all, expect_path
 from sensorfault.core.extras import require
 from sensorfault.core.files import appearing
 from sensorfault.faults.fault import Fault
@@ -45,7 +46,11 @@ def write_page(
 
     Raises:
         MissingLibrary: plotly is not installed.
+        TypeError: something else than a detection, a path or faults.
     """
+    expect(detection, Detection, "write_page: detection", DETECTION)
+    expect_path(path, "write_page: path")
+    expect_all(truth, Fault, "write_page: truth", FAULTS)
     write_sketch(Sketch.of(detection.received), path, truth, title, summary, detection.log.notes)
 
 

@@ -34,6 +34,11 @@ def _row(sketch: Sketch, test: Tested) -> Row:
     return Row(label, traces, shades(sketch, lambda event: _concerns(sketch, test, event)), log=test.spans_much)
 
 
-def scores(sketch: Sketch) -> Json:
+def score_rows(sketch: Sketch) -> list[Row]:
     """One row a test."""
-    return stacked([_row(sketch, test) for test in sketch.tests.values()], sketch.span, 72)
+    return [_row(sketch, test) for test in sketch.tests.values()]
+
+
+def scores(sketch: Sketch) -> Json:
+    """The figure of all tests."""
+    return stacked(score_rows(sketch), sketch.span, 72)

@@ -52,8 +52,12 @@ def _row(sketch: Sketch, column: int, truth: Sequence[Fault]) -> Row:
     return Row(text if traces else f"{text} never spoke", traces, marks)
 
 
+def rows_of(sketch: Sketch, sensor: str, truth: Sequence[Fault]) -> list[Row]:
+    """One row a channel of a sensor, in the channel's own unit."""
+    return [_row(sketch, column, truth) for column in sketch.log.of(sensor)]
+
+
 def signals(sketch: Sketch, sensor: str, truth: Sequence[Fault]) -> Json:
-    """One row a channel, in the channel's own unit."""
-    columns = sketch.log.of(sensor)
-    rows = [_row(sketch, column, truth) for column in columns]
-    return stacked(rows, sketch.span, 90 if len(columns) <= 6 else 60)
+    """The figure of one sensor."""
+    rows = rows_of(sketch, sensor, truth)
+    return stacked(rows, sketch.span, 90 if len(rows) <= 6 else 60)

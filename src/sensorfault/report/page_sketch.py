@@ -19,9 +19,9 @@ MOTION, NAMELESS = "vehicle motion", "unknown which"  # where no sensor is named
 class Sketch:
     """A detection as a page draws it. `log` is its first part, for names and notes; `rows` and `end_s` are of all."""
 
-    def __init__(self, first: Detection) -> None:
+    def __init__(self, first: Detection, points: int = POINTS) -> None:
         self.log, self.method, self.watched = first.log, first.method, first.watched
-        self.rows = 0
+        self.rows, self._points = 0, points
         self.start_s = self.end_s = float(first.log.time[0]) if len(first.log) else 0.0
         self.period_s = first.log.period_s
         self.events: tuple[Event, ...] = ()
@@ -31,9 +31,9 @@ class Sketch:
         self._nameless = self._motion = False
 
     @classmethod
-    def of(cls, detection: Detection) -> "Sketch":
-        """Of a log as a whole."""
-        sketch = cls(detection)
+    def of(cls, detection: Detection, points: int = POINTS) -> "Sketch":
+        """Of a log as a whole, with so many points in all."""
+        sketch = cls(detection, points)
         sketch.take(detection)
         return sketch
 
@@ -57,7 +57,7 @@ class Sketch:
             return
         self.end_s = float(part.log.time[-1])
         lines = len(part.log.channels) + len(part.traces)
-        points = max(8, round(share * max(1000, POINTS // max(1, lines))))
+        points = max(8, round(share * max(1000, self._points // max(1, lines))))
         keep = near(part.log.time, self._spans(part.log), points)
         for column, drawn in enumerate(self.channels):
             self._draw(drawn, part, column, keep, points)

@@ -5,9 +5,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
+from sensorfault.core.clock import clock
+from sensorfault.core.expect import LOG, MODEL, expect, wrong
 from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.epochs import Gather
+from sensorfault.logs.phrase import counted
 from sensorfault.logs.table import Log
 from sensorfault.runtime.extractor import EventExtractor, context_of
 from sensorfault.runtime.model import Model
@@ -18,11 +21,23 @@ from sensorfault.runtime.tracker import Tracker
 
 
 def detect(model: Model, log: Log, progress: Progress | None = None) -> Detection:
-    """Replay a log through a fitted monitor, from a fresh start.
+    """Judge every row of a log, from a fresh start.
+
+    Args:
+        model: what `fit` or `load` returned, for C channels of S sensors.
+        log: T rows in SI on one clock; it must have the model's channels, other channels are ignored.
+        progress: called with the share that is done, 0 to 1.
+
+    Returns:
+        Verdicts (T x C channels, T x S sensors, T samples), events [s of the log's clock], scores and limits of each
+        test, residuals and repaired values [SI].
 
     Raises:
-        LogError: the log lacks a channel of the model, or ticks at another rate.
+        LogError: the log lacks a channel of the model, ticks at another rate, or is empty.
+        TypeError: one of the two is something else.
     """
+    expect(model, Model, "detect: model", MODEL)
+    expect(log, Log, "detect: log", LOG)
     log = model.take(log)
     result = replay_log(model.monitor, log, progress)
     extractor = EventExtractor(model)
@@ -38,9 +53,14 @@ class Live:
     >>> now.sample  # 0 ok, 1 unknown, 2 fault
 
     `events` are those that have ended; `open()` those that go on.
+
+    Raises:
+        TypeError: something else than a model.
     """
 
     def __init__(self, model: Model) -> None:
+        expect(model, Model, "Live: model", MODEL)
+        self._model = model
         self.events: list[Event] = []
         framing = model.framing
         self._gather = Gather(framing) if framing else None
@@ -63,21 +83,28 @@ class Live:
         `fresh` marks new measurements; left out, a held sensor is new when one of its channels has changed. Where the
         model judges epochs, a sample that ends none is answered with what was said of the last.
 
+        Returns:
+            Verdicts (C channels, S sensors, the sample), scores and limits (K tests), residuals and values (C) [SI].
+
         Raises:
             ValueError: time did not rise, or the number of values is not that of the model's channels.
+            TypeError: the time is no number, or the values are not numbers.
         """
-        if len(value) != len(self._fresh):
+        row = _row(value)
+        if len(row) != len(self._fresh):
             width = len(self._fresh)
-            raise ValueError(f"live: {len(value)} values for {width} channels; push one for each, NaN if absent.")
-        if not (self._time is None or time > self._time):
+            raise ValueError(f"live: {len(row)} values for {width} channels; push one for each, NaN if absent.")
+        if not isinstance(time, int | float | np.number):
+            raise wrong(time, "live: time", "the time of the sample, in seconds")
+        if not time > (-np.inf if self._time is None else self._time):
             raise ValueError(f"live: time went from {self._time} to {time} s; push samples in order, each once.")
         if fresh is None:
-            fresh = self._fresh if not self._held else self._changed(np.asarray(value, float))
+            fresh = self._fresh if not self._held else self._changed(row)
         before, self._time = self._time, float(time)
         gap_s = 0.0 if before is None else self._time - before
         if self._gather is None:
-            return self._judge(self._time, gap_s, np.asarray(value, float), fresh)
-        cut = self._gather.push(self._time, np.asarray(value, float), np.broadcast_to(fresh, len(value)))
+            return self._judge(self._time, gap_s, row, fresh)
+        cut = self._gather.push(self._time, row, np.broadcast_to(fresh, len(row)))
         if cut is None:
             return self._now
         gap_s, self._epoch = (0.0 if self._epoch is None else self._time - self._epoch), self._time
@@ -96,6 +123,11 @@ class Live:
             self.events += self._tracker.push(time, gap_s, value, now)
         return now
 
+    def __repr__(self) -> str:
+        at = "no sample yet" if self._time is None else f"at {clock(self._time)}"
+        ended, ongoing = counted(len(self.events), "event"), len(self.open())
+        return f"<Live {at}, {ended} ended and {ongoing} ongoing: {self._model!r}>"
+
     def open(self) -> list[Event]:
         """Events that go on; their end_s is None."""
         return self._tracker.open()
@@ -106,3 +138,18 @@ class Live:
             fresh[channels] = (value[channels] != self._last[channels]).any()
         self._last = np.where(np.isfinite(value), value, self._last)
         return fresh
+
+
+def _row(value: Any) -> Float[np.ndarray, " C"]:
+    """The values of one sample.
+
+    Raises:
+        TypeError: not numbers, one after the other.
+    """
+    try:
+        row: Float[np.ndarray, " C"] = np.asarray(value, float)
+    except (TypeError, ValueError):
+        row = np.zeros(())
+    if row.ndim != 1:
+        raise wrong(value, "live: value", "a list or an array of numbers, one for each channel, NaN if absent")
+    return row

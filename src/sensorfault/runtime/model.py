@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float
 from sensorfault.core.monitor import Monitor
 from sensorfault.logs.epochs import Epoch, Framing
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
+from sensorfault.runtime import show
 
 MOTION = "motion"  # instead of a channel: this test judges how the vehicle moves
 TOGETHER = ", "  # between channels that one test accuses together
@@ -35,6 +36,13 @@ class Model:
     sigma: tuple[float, ...]
     summary: dict[str, Any] = field(default_factory=dict)
     framing: Framing | None = None
+
+    def __repr__(self) -> str:
+        return f"<Model {show.model_line(self.method, self.sensors, self.tick_s, self.summary)}>"
+
+    def _repr_html_(self) -> str:
+        title = show.model_line(self.method, self.sensors, self.tick_s, self.summary)
+        return show.model_html(title, self.channels, self.sensors, self.watched, self.summary)
 
     @property
     def period_s(self) -> Float[np.ndarray, " C"]:

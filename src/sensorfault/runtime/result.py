@@ -1,14 +1,18 @@
 """What a fitted monitor found in a log."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int8
 
+from sensorfault.core.plotting import draw
 from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
+from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log
+from sensorfault.runtime import show, tables
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Replayed
 
@@ -25,6 +29,14 @@ class Trace:
     score: Float[np.ndarray, " T"]
     limit: Float[np.ndarray, " T"]
 
+    @property
+    def title(self) -> str:
+        """`repeats of gyro.x`; the test's name alone where it examines all channels."""
+        return f"{self.name} of {self.channel}" if self.channel else self.name
+
+    def __repr__(self) -> str:
+        return f"<Trace {self.title}: {len(self.score)} rows>"
+
 
 @dataclass(frozen=True)
 class Detection:
@@ -33,6 +45,7 @@ class Detection:
     `motion` is the verdict on the vehicle's motion, where the method judges it.
     `watched` says which channels were judged; of the others only silence was noticed.
     `repaired` is `log.value` with stand-ins where a channel was rebuilt, NaN where there was nothing to say [SI].
+    `residual`: measured minus expected [SI; metres where a method compares positions], NaN where it was not tested.
     """
 
     log: Log
@@ -45,6 +58,69 @@ class Detection:
     repaired: Float[np.ndarray, "T C"]
     traces: tuple[Trace, ...]
     events: tuple[Event, ...]
+    residual: Float[np.ndarray, "T C"] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Detection {show.line(self.log, self.method, self.events)}>"
+
+    def _repr_html_(self) -> str:
+        return show.as_html(self.log, self.method, self.events, self.sensor)
+
+    def events_table(self, pandas: bool = False) -> Any:
+        """One row an event, by onset: start_s, end_s [s], subject, sensor, channel, kind, peak_score, limit, method.
+
+        Null: an end where the event is ongoing, a sensor or channel where none can be named, a score where there is
+        none. A Polars DataFrame, or a pandas one where `pandas` asks for it.
+
+        Raises:
+            ImportError: pandas is asked for and not installed.
+        """
+        return tables.events_table(self.events, pandas)
+
+    def verdicts_table(self, channels: bool = False, pandas: bool = False) -> Any:
+        """One row a tick: time_s [s], then `ok`, `unknown` or `fault` of `sample`, `motion` and each sensor.
+
+        `channels`: also of each channel, `sensor.channel`. A fault of the sample with no sensor at fault means that
+        nobody could be named. The words are ordered (Polars Enum, pandas Categorical): ok < unknown < fault.
+
+        Raises:
+            ImportError: pandas is asked for and not installed.
+        """
+        verdicts = self.sample, self.motion, self.sensor, self.channel if channels else None
+        return tables.verdicts_table(self.log, *verdicts, pandas)
+
+    def scores_table(self, pandas: bool = False) -> Any:
+        """One row a tick: time_s [s], then two columns a test, `NAME of CHANNEL` and `NAME of CHANNEL, limit`.
+
+        A test that examines all channels is `NAME`. There is a fault where the score is above the limit; both have the
+        statistic's own unit. Null where the test had nothing to test. Tests that never tested anything are left out.
+
+        Raises:
+            ImportError: pandas is asked for and not installed.
+        """
+        return tables.scores_table(self.log, [(test.title, test.score, test.limit) for test in self.traces], pandas)
+
+    def residuals_table(self, pandas: bool = False) -> Any:
+        """One row a tick: time_s [s], then measured minus expected of each channel, `sensor.channel`.
+
+        In SI, as the method compares them: metres for positions given in degrees. Null where the residual was not
+        tested: no new measurement, not warmed up, or a channel that the method does not judge.
+
+        Raises:
+            LogError: the detection keeps no residuals.
+            ImportError: pandas is asked for and not installed.
+        """
+        return tables.residuals_table(self.log, self.residual, pandas)
+
+    def plot(
+        self,
+        truth: Sequence[Fault] = (),
+        dark: bool = False,
+        sensors: Sequence[str] | None = None,
+        scores: bool = True,
+    ) -> Any:
+        """A Plotly figure of verdicts, signals and scores; see `sensorfault.plot`, which draws it."""
+        return draw(self, truth=truth, dark=dark, sensors=sensors, scores=scores)
 
     @property
     def received(self) -> "Detection":
@@ -61,6 +137,7 @@ class Detection:
             channel=self.channel[:, kept],
             sensor=self.sensor[:, mine],
             repaired=self.repaired[:, kept],
+            residual=None if self.residual is None else self.residual[:, kept],
         )
 
 
@@ -79,6 +156,7 @@ def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) 
         repaired=np.where(lost, np.nan, np.asarray(result.value)),
         traces=_traces(model, result),
         events=tuple(events),
+        residual=np.where(np.asarray(result.valid), np.asarray(result.residual), np.nan),
     )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from safetensors import SafetensorError, safe_open
 from safetensors.numpy import save_file
 
+from sensorfault.core.expect import MODEL, expect, expect_path
 from sensorfault.core.files import appearing
 from sensorfault.core.monitor import Monitor
 from sensorfault.core.types import Sample
@@ -38,7 +39,12 @@ def save(model: Model, path: Path | str) -> None:
 
     The header is JSON under the key `sensorfault`: format, versions, method, channels with units, sensors, summary, the
     monitor's parts, and a digest over header and numbers.
+
+    Raises:
+        TypeError: something else than a model or a path, or a part of the model that cannot be stored.
     """
+    expect(model, Model, "save: model", MODEL)
+    expect_path(path, "save: path")
     tensors: Tensors = {}
     header = {
         "format": FORMAT,
@@ -64,7 +70,9 @@ def load(path: Path | str) -> Model:
 
     Raises:
         ModelError: not there, not ours, cut short, changed since it was written, or of another format.
+        TypeError: something else than a path.
     """
+    expect_path(path, "load: path")
     path = Path(path)
     if not path.is_file():
         raise ModelError(f"{path}: there is no such model file; make one with 'sensorfault fit LOG --out {path.name}'.")

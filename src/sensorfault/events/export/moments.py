@@ -32,17 +32,8 @@ def moments(events: Sequence[Event], log: Log) -> list[Moment]:
     return found
 
 
-def door(event: Event) -> str:
-    """At whose door the fault is laid: `gnss.altitude`, `gnss`, `vehicle motion`, or nobody's."""
-    if event.subject == "motion":
-        return "vehicle motion"
-    if event.sensor is None:
-        return "the whole log" if event.kind == "missing" else "unknown which"
-    return f"{event.sensor}.{event.channel}" if event.channel else event.sensor
-
-
 def sentence(event: Event, begins: bool) -> str:
     """`bias on gnss.altitude begins (score 12.3, limit 8.4, drone)`."""
     score = f"score {event.peak_score:.3g}, " if event.peak_score is not None else ""
     limit = f"limit {event.limit:.3g}, " if event.limit is not None else ""
-    return f"{event.kind} on {door(event)} {'begins' if begins else 'ends'} ({score}{limit}{event.method})"
+    return f"{event.kind} on {event.where} {'begins' if begins else 'ends'} ({score}{limit}{event.method})"

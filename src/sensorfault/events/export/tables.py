@@ -31,15 +31,16 @@ def write_jsonl(events: Sequence[Event], log: Log, path: Path, source: Path | No
 
 def write_csv(events: Sequence[Event], log: Log, path: Path, source: Path | None) -> None:
     """With a header; an empty cell where there is no value."""
-    _frame(events).write_csv(path)
+    frame(events).write_csv(path)
 
 
 def write_parquet(events: Sequence[Event], log: Log, path: Path, source: Path | None) -> None:
     """The same columns, null where there is no value."""
-    _frame(events).write_parquet(path)
+    frame(events).write_parquet(path)
 
 
-def _frame(events: Sequence[Event]) -> "polars.DataFrame":
+def frame(events: Sequence[Event]) -> "polars.DataFrame":
+    """A row an event, a column a field of Event, null where there is no value."""
     import polars as pl
 
     return pl.DataFrame([event.as_dict() for event in events], schema=_SCHEMA)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from sensorfault.core.expect import EVENTS, LOG, expect, expect_all, expect_path
 from sensorfault.core.extras import require
 from sensorfault.core.files import appearing
 from sensorfault.events.event import Event
@@ -52,7 +53,11 @@ def write_events(events: Sequence[Event], log: Log, path: str | Path, source: Pa
     Raises:
         LogError: as `check` says, or the folder cannot be written to.
         MissingLibrary: as `check` says.
+        TypeError: something else than events, a log or a path.
     """
+    expect_all(events, Event, "write_events: events", EVENTS)
+    expect(log, Log, "write_events: log", LOG)
+    expect_path(path, "write_events: path")
     path = Path(path)
     check(path)
     writer = KINDS[path.suffix.lower()]

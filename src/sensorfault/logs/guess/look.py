@@ -91,7 +91,7 @@ def look_at_topics(topics: Mapping[str, Path], others: list[str], tell: Callable
     guesses = []
     for name, meaning in fields.items():
         try:
-            guesses.append(replace(_guess_table(tables[name], None, meaning), topic=name))
+            guesses.append(replace(guess_table(tables[name], None, meaning), topic=name))
         except LogError as error:
             errors.append(error)
     used = [one.path.name for one in guesses]
@@ -105,14 +105,14 @@ def _guess_tables(tables: Tables, fields: Mapping[str, Fields] | None) -> tuple[
     guesses, errors = [], []
     for name, source in tables.items():
         try:
-            guesses.append(_guess_table(source, name or None, None if fields is None else fields[name]))
+            guesses.append(guess_table(source, name or None, None if fields is None else fields[name]))
         except LogError as error:
             errors.append(LogError(f"{error} (table {name})") if name else error)
     return guesses, errors
 
 
-def _guess_table(source: Source, table: str | None, fields: Fields | None) -> Guess:
-    """`fields`: what they mean, where that is known."""
+def guess_table(source: Source, table: str | None, fields: Fields | None) -> Guess:
+    """The clock and the sensors in one table. `fields`: what its columns mean, where that is known."""
     path = source.path
     head = replace(source, frame=source.frame.head(_ROWS))
     time, unit, why = guess_time(head)

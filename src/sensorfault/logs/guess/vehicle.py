@@ -8,9 +8,10 @@ import numpy as np
 
 from sensorfault.logs.guess.columns import NO_SENSOR, OTHER_TIME, QUALITY
 from sensorfault.logs.guess.exported import topics_of
-from sensorfault.logs.guess.look import Guess, look_at, look_at_topics
+from sensorfault.logs.guess.look import Guess, guess_table, look_at, look_at_topics
 from sensorfault.logs.guess.naming import joined, short_names, stem_of
 from sensorfault.logs.place import Where, files_of
+from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -50,6 +51,19 @@ def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
     name = stem_of(files[0]) if len(files) == 1 else files[0].absolute().parent.stem
     return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def guess_source(source: Source) -> VehicleFile:
+    """Describe one table from its names and values.
+
+    Raises:
+        LogError: no column rises like a time, or none measures anything.
+    """
+    one = guess_table(source, None, None)
+    return VehicleFile(
+        source.path.stem, (replace(one.file, name="log"),), tuple(one.sensors), notes=tuple(_missed([one]))
+    )
 
 
 def _refuse_several_drives(guesses: list[Guess]) -> None:

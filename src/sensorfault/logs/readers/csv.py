@@ -154,14 +154,15 @@ def _odd_line(path: Path, dialect: Dialect) -> str:
 
 
 def _numbers(frame: pl.DataFrame) -> pl.DataFrame:
-    """Text columns become numbers where every cell is one."""
-    columns = []
-    for column in frame:
-        text = column.str.strip_chars(_PADDING)
-        text = text.set(text.is_in(MISSING), None)
-        number = text.cast(pl.Float64, strict=False)
-        columns.append(number if number.null_count() == text.null_count() else text)
-    return pl.DataFrame(columns)
+    return pl.DataFrame([numbers_of(column) for column in frame])
+
+
+def numbers_of(column: pl.Series) -> pl.Series:
+    """A text column as numbers where every cell is one."""
+    text = column.str.strip_chars(_PADDING)
+    text = text.set(text.is_in(MISSING), None)
+    number = text.cast(pl.Float64, strict=False)
+    return number if number.null_count() == text.null_count() else text
 
 
 def _last_cut(path: Path, dialect: Dialect, frame: pl.DataFrame) -> bool:
