@@ -27,13 +27,13 @@ def read(
         resample: how slower files come to the ticks of the fastest. "hold": a measurement is put on the first tick
             at or after its own time and the other ticks stay empty. "linear": drawn between measurements, which looks
             into the future and smooths faults over; for plots, and for papers that ask for it.
-        tell: hears how much of a large file has been read, 0 to 1.
+        tell: is called with the share of a large file that has been read, 0 to 1.
 
     Returns:
         The log in SI units on one clock.
 
     Raises:
-        LogError: whatever keeps the log from being used, in one sentence.
+        LogError: the log cannot be used; one sentence says why.
         MissingLibrary: polars, which reads and joins tables, is not installed.
     """
     require(f"{path}: reading it", "polars")
