@@ -35,7 +35,7 @@ def test_a_text_log_with_odd_lines(tmp_path: Path) -> None:
     lines[200] = "IMU, 17\n"
     log = read(put(tmp_path, "".join(lines)[:-9], ".log"))
     assert log.damage == (
-        "flight.log: 2 lines are no messages, the first at line 101; the others were read.",
+        "flight.log: 2 lines are not messages, the first at line 101; the others were read.",
         f"flight.log: the file breaks off at line {len(lines)}; what came before was read.",
     )
 
@@ -63,7 +63,7 @@ def test_telemetry_that_breaks_off_and_has_rubbish(tmp_path: Path) -> None:
     log = read(put(tmp_path, whole[:3000] + b"\xfe\xfd\x00" * 50 + whole[3000:], ".tlog"))
     assert log.duration_s == pytest.approx(9.9)
     (result,) = log.damage
-    assert "bytes belong to no whole packet, the first at byte" in result
+    assert "bytes are not in a whole packet, the first at byte" in result
     assert 2900 < int(result.split("at byte ")[1].split(";")[0]) <= 3000
 
 

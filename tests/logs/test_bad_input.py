@@ -131,7 +131,7 @@ def folder_of_garbage(folder: Path) -> Path:
 
 
 CASES: list[tuple[Callable[[Path], Path], str, str]] = [
-    (missing, "there is no such file", "look at the path"),
+    (missing, "there is no such file", "check the path"),
     (empty, "empty", "name a log"),
     (blank, "empty", "name a log"),
     (comments, "comments only", "name a log"),
@@ -140,10 +140,10 @@ CASES: list[tuple[Callable[[Path], Path], str, str]] = [
     (one_time, "one row|stands still", "at least two rows|one row for each time"),
     (one_column, "one cell", "delimiter"),
     (no_time, "no time column", "add one|take one of"),
-    (text_cell, "line 42, column 'a' holds 'broken'", "mend the cell"),
-    (text_time, "line 22, column 't' holds '2O'", "mend the cell"),
-    (long_line, "line 22 has 3 cells where the others have 2", "mend that line"),
-    (open_quote, "line 22 has a quote that does not close", "mend that line"),
+    (text_cell, "line 42, column 'a' holds 'broken'", "correct the cell"),
+    (text_time, "line 22, column 't' holds '2O'", "correct the cell"),
+    (long_line, "line 22 has 3 cells where the others have 2", "correct that line"),
+    (open_quote, "line 22 has a quote that does not close", "correct that line"),
     (all_nan, "column 'a' holds no value at all", "take it out"),
     (backwards, "goes back", "sort the file"),
     (unknown_suffix, r"'\.xlsx'", "give one of .asc, .bag, "),

@@ -63,7 +63,7 @@ def test_frames_are_decoded_by_the_database_beside_them(tmp_path: Path, write: o
     np.testing.assert_allclose(left * 3.6, 36 + 0.1 * np.arange(written_bus.ROWS), atol=0.006)
     turned = column(log, "gyro.z")
     assert np.nanmax(turned) == pytest.approx(np.deg2rad(3.0))
-    assert any(f"{written_bus.ROWS} frames of unknown messages left out, of 0x300" in note for note in log.notes)
+    assert any(f"{written_bus.ROWS} frames of unknown messages left out: 0x300" in note for note in log.notes)
     if write is written_bus.blf:
         assert log.epoch_s == pytest.approx(written_bus.START_S, abs=0.01)
 
@@ -71,7 +71,7 @@ def test_frames_are_decoded_by_the_database_beside_them(tmp_path: Path, write: o
 def test_a_recording_without_a_database_says_what_it_needs(tmp_path: Path) -> None:
     path = written_bus.blf(tmp_path / "drive.blf")
     (tmp_path / "car.dbc").unlink()
-    with pytest.raises(LogError, match=r"no \.dbc file lies beside it"):
+    with pytest.raises(LogError, match=r"there is no \.dbc file beside it"):
         read(path)
     (tmp_path / "car.dbc").write_text("nothing of the kind")
     with pytest.raises(LogError, match=r"car\.dbc: this database cannot be read"):

@@ -61,7 +61,7 @@ def test_a_kind_described_with_contradictions_is_left_out_and_said(tmp_path: Pat
     odd += b"".join(b"\xa3\x95\x8c" + struct.pack("<Qf", 3_000_000 + k, k) for k in range(20))
     tables = read_tables(put(tmp_path, flight() + odd))
     assert "ODD" not in tables
-    assert tables["IMU"].notes == ("flight.bin: messages described with contradictions left out: 'ODD'.",)
+    assert tables["IMU"].notes == ("flight.bin: messages with contradictory descriptions left out: 'ODD'.",)
     assert tables["IMU"].damage == ()
 
 

@@ -18,7 +18,7 @@ def test_a_folder_of_topics_is_the_flight(tmp_path: Path) -> None:
     (folder / "flight_vehicle_status_0.csv").write_text("timestamp,mode\n1000,1\n2000,1\n")
     found = guess(folder)
     assert VehicleFile.parse(found.to_toml()) == found
-    assert "Topics of PX4, a file each; sensors are in flight_sensor_combined_0.csv" in " ".join(found.notes)
+    assert "Topics of PX4, one file each; sensors are in flight_sensor_combined_0.csv" in " ".join(found.notes)
     assert "flight_vehicle_status_0.csv" in " ".join(found.notes)
     log, whole = read(folder, found), read(path)
     assert {sensor.name for sensor in log.sensors} == {sensor.name for sensor in whole.sensors}

@@ -45,7 +45,7 @@ def test_ubx_says_what_pyubx2_says(tmp_path: Path) -> None:
             result = [getattr(message, f"{theirs}_{i:02}") for message in said]
             np.testing.assert_array_equal(column(log, f"{satellite}.{ours}"), result)
     assert column(log, "G07.sigma_m")[0] == pytest.approx(0.01 * 2**5)
-    assert any("no whole ephemeris was broadcast" in note for note in log.notes)
+    assert any("it has no complete ephemeris" in note for note in log.notes)
     fixes = read_source(path, "NAV-PVT").frame
     assert fixes["latitude"][1] == pytest.approx(48.10001)
     assert fixes["altitude"][0] == 512.345
@@ -109,7 +109,7 @@ def test_ephemerides_beside_the_observations_give_the_places(tmp_path: Path) -> 
     sent = 1756036800.0 - 18 - 315964800.0 + 18 - column(log, "G07.pseudorange_m")[0] / C
     result = read_nav(tmp_path / "site.nav").at("G07", np.array([sent]))
     np.testing.assert_allclose(result.position, place[:1], atol=1.0)
-    assert any("places are from site.nav" in note for note in log.notes)
+    assert any("positions are from site.nav" in note for note in log.notes)
     alone = read(tmp_path)  # the folder is one log: its navigation file is no log beside it
     assert [sensor.name for sensor in alone.sensors] == [sensor.name for sensor in log.sensors]
 
@@ -140,7 +140,7 @@ def test_corrected_ranges_hold_the_distance_and_the_receivers_clock() -> None:
 
 
 def test_without_places_there_are_no_satellites(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match="no satellite of G has a corrected pseudorange"):
+    with pytest.raises(LogError, match="no raw satellite data with orbits of G"):
         satellites(read(SMALL["u-blox"](tmp_path)), "G")
 
 
@@ -197,7 +197,7 @@ def test_a_packed_file_is_read_up_to_its_damage(tmp_path: Path) -> None:
     (content,) = unpacked
     assert content[:15_000] == ("time,ax,ay\n" + rows)[:15_000]
     path.write_bytes(b"no gzip at all")
-    with pytest.raises(LogError, match="nothing in this file can be unpacked"):
+    with pytest.raises(LogError, match="this file cannot be unpacked"):
         read(path)
 
 

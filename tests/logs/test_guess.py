@@ -40,7 +40,7 @@ def described(vehicle: VehicleFile) -> dict[str, dict[str, tuple[str, str]]]:
 def blind(vehicle: VehicleFile) -> set[str]:
     """Channels that are not watched; each says why."""
     unwatched = [(s, c) for s in vehicle.sensors for c in s.channels if not c.watch]
-    assert all("only its silence is noticed" in c.why for _, c in unwatched)
+    assert all("only dropouts are detected" in c.why for _, c in unwatched)
     return {f"{s.name}.{c.name}" for s, c in unwatched}
 
 

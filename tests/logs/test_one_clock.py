@@ -64,7 +64,7 @@ def test_equal_times_meet_though_rounded_otherwise(tmp_path: Path) -> None:
 def test_of_two_measurements_on_one_tick_the_later_stays_and_it_is_said(tmp_path: Path) -> None:
     log = drive(tmp_path, np.arange(100) * 0.1, np.array([1.01, 2.01, 2.02, 2.03, 5.0, 8.0]))
     np.testing.assert_allclose(log.value[log.fresh[:, 0], 0] * 3.6 - 36, [1.01, 2.03, 5.0, 8.0])
-    assert any("2 rows fell on the tick of a later row" in note for note in log.notes)
+    assert any("2 rows dropped: a later row has the same time step" in note for note in log.notes)
 
 
 def test_measurements_outside_the_ticks_are_left_out_and_said(tmp_path: Path) -> None:

@@ -45,8 +45,8 @@ def test_the_usual_messages_and_one_of_its_own(tmp_path: Path, way: str) -> None
     assert (units["position.position_3"], units["velocity.velocity_1"]) == ("rad", "rad/s")
     said = " ".join(vehicle.notes)
     assert "topics without numbers left out: /chatter" in said
-    assert "fields that are no measurements left out: /own.scan (40 numbers), " in said
-    assert "commands, no measurements, so left out: /cmd_vel" in said
+    assert "fields that are not measurements left out: /own.scan (40 numbers), " in said
+    assert "left out, as they are commands: /cmd_vel" in said
     assert log.damage == ()
 
 
@@ -69,8 +69,8 @@ def test_stamps_count_and_reception_where_there_is_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("stamp_s", "said"),
     [
-        (lambda k: 5.0 + k / 10, "are of another clock, -1.7e+09 s off the recording's"),
-        (lambda k: 1_700_000_000.0, "do not rise"),
+        (lambda k: 5.0 + k / 10, "are from another clock, -1.7e+09 s off the recording's"),
+        (lambda k: 1_700_000_000.0, "do not increase"),
         (lambda k: 1_700_000_000.0 + k / 10, None),
         (lambda k: 0.0, None),
     ],
@@ -121,7 +121,7 @@ def test_a_recording_that_breaks_off_is_read_so_far_and_says_where(tmp_path: Pat
     log = parts(tmp_path, whole[:at], path.suffix)
     assert 1.0 < log.duration_s < 3.5
     (result,) = log.damage
-    assert "breaks off, or holds what is no record, at byte" in result
+    assert "breaks off, or has an invalid record, at byte" in result
     assert 0 <= at - int(result.split("at byte ")[1].split(";")[0]) < (40_000 if "lz4" in way else 200_000)
 
 
@@ -143,7 +143,7 @@ def test_a_database_that_breaks_off(tmp_path: Path) -> None:
     whole = bag2(tmp_path / "drive").read_bytes()
     log = parts(tmp_path, whole[: len(whole) // 2 // 4096 * 4096], ".db3")
     assert 0.5 < log.duration_s < 3.9
-    assert "the database broken.db3 can be read no further" in log.damage[0]
+    assert "the database broken.db3 cannot be read further" in log.damage[0]
     assert "it ends at message" in log.damage[0]
 
 

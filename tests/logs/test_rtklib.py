@@ -91,7 +91,7 @@ def test_a_time_tag_puts_a_counter_on_gps_time(tmp_path: Path, end: bytes, strip
     assert late.min() > 0.004
     assert late.max() < 0.019
     assert late.max() - late.min() < 0.002
-    assert any("ties its counter to GPS time" in note and "ppm slow" in note for note in log.notes)
+    assert any("gives its counter GPS time" in note and "ppm slow" in note for note in log.notes)
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,7 @@ def test_a_table_for_people() -> None:
 
 
 def test_shapes_that_do_not_go_together() -> None:
-    with pytest.raises(LogError, match="do not go with"):
+    with pytest.raises(LogError, match="do not fit"):
         Log(np.zeros(2), np.zeros((2, 1)), np.ones((2, 1), bool), (), (Sensor("gyro", 1.0),))
 
 

@@ -52,7 +52,7 @@ def test_a_table_with_a_time_of_its_own_keeps_it(tmp_path: Path) -> None:
 
 def test_as_many_times_as_rows(tmp_path: Path) -> None:
     lay_out(tmp_path, 0.02 * np.arange(202))
-    with pytest.raises(LogError, match="no column rises"):
+    with pytest.raises(LogError, match="no column increases"):
         read(tmp_path / "state.csv")
     table = np.column_stack([TIME_S, STATE])
     np.savetxt(tmp_path / "state.csv", table, delimiter=",")
@@ -64,7 +64,7 @@ def test_as_many_times_as_rows(tmp_path: Path) -> None:
 def test_a_line_that_is_no_time(tmp_path: Path) -> None:
     path = lay_out(tmp_path) / "time.csv"
     path.write_text(path.read_text().replace("3.960000", "late"))
-    with pytest.raises(LogError, match=r"time\.csv: 'late' is no time; write one number a line"):
+    with pytest.raises(LogError, match=r"time\.csv: 'late' is not a time; write one number per line"):
         read(tmp_path / "state.csv")
 
 

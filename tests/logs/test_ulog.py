@@ -40,7 +40,7 @@ def test_a_stock_log_needs_no_hand(tmp_path: Path) -> None:
     path = put(tmp_path, flight())
     vehicle = guess(path)
     assert VehicleFile.parse(vehicle.to_toml()) == vehicle
-    assert "No sensors, so left out: cpuload." in vehicle.notes[0]
+    assert "Left out as not sensors: cpuload." in vehicle.notes[0]
     log = read(path, vehicle)
     assert log.duration_s == pytest.approx(9.98)
     roll = log.index("attitude.roll")
@@ -70,15 +70,15 @@ def test_rubbish_inside_is_passed_over_and_said(tmp_path: Path, capfd: pytest.Ca
 
 def test_what_the_autopilot_could_not_write_is_said(tmp_path: Path) -> None:
     log = read(put(tmp_path, flight() + message("O", struct.pack("<H", 250)) * 2))
-    assert "flight.ulg: the autopilot could not write 2 times, 0.5 s in all." in log.notes
+    assert "flight.ulg: the autopilot lost data 2 times, 0.5 s in all." in log.notes
 
 
 @pytest.mark.parametrize(
     ("content", "said"),
     [
         (b"", "an empty file"),
-        (b"ULog", "no ULog"),
-        (b"\xa3\x95" * 200, "no ULog"),
+        (b"ULog", "not a ULog"),
+        (b"\xa3\x95" * 200, "not a ULog"),
         (HEAD[:12], "damaged"),
         (HEAD, "no topic with a time"),
         (head(), "no topic with a time"),

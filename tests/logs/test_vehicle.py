@@ -77,7 +77,7 @@ def test_what_is_written_parses_to_the_same(vehicle: VehicleFile) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("[vehicle]", "[vehicle", "this is not TOML .*; mend that line"),
+        ("[vehicle]", "[vehicle", "this is not TOML .*; correct that line"),
         ('name = "car"', 'nmae = "car"', r"\[vehicle\] has an unknown key 'nmae'; take one of name"),
         (
             "[vehicle]",

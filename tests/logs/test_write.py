@@ -104,7 +104,7 @@ def test_nothing_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     ("name", "sentence"),
     [
         ("log.xlsx", "written as .csv or .parquet"),
-        ("no/such/log.csv", r"no/such/log.csv: cannot be written \(No such file or directory\); look at the folder"),
+        ("no/such/log.csv", r"no/such/log.csv: cannot be written \(No such file or directory\); check the folder"),
     ],
 )
 def test_where_a_log_cannot_go(tmp_path: Path, name: str, sentence: str) -> None:

@@ -1,4 +1,4 @@
-"""A file's time column: seconds from its first row, rising strictly, and what was wrong with it."""
+"""The time column of a file: strictly increasing seconds from the first row, and notes on what was wrong with it."""
 
 from bisect import bisect_left
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
-GAP = 3.0  # a gap is longer than so many usual periods
+GAP = 3.0  # a gap is longer than this many usual periods
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
 HOPELESS = 0.2  # share of rows that may be dropped
 _PER_SECOND = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
-_UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: what a reading must lie in to be Unix time
+_UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: a reading between them is Unix time
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
     """The clock in a time column.
 
     Raises:
-        LogError: no such column, no times in it, one row only, or more than a fifth of the rows going back.
+        LogError: no such column, no times in it, only one row, or more than a fifth of the rows go back in time.
     """
     if column not in source.frame.columns:
         known = ", ".join(source.frame.columns)
@@ -102,7 +102,7 @@ def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
         row = int(bad[0])
         raise LogError(
             f"{source.path}: {source.place(row)}, column '{column}' holds '{source_column[row]}', which is no date and "
-            "time like 2026-11-23T12:00:00.5; mend the cell or the time column's unit."
+            "time like 2026-11-23T12:00:00.5; correct the cell or the time column's unit."
         )
     ticks = stamp.dt.epoch("us")
     first = ticks.drop_nulls()[0] if ticks.null_count() < len(ticks) else 0
@@ -110,7 +110,7 @@ def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
 
 
 def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """The most rows that rise strictly in time; a single wild reading costs one row, wherever it points."""
+    """The longest strictly increasing subsequence of rows; one wrong reading costs one row."""
     step = np.diff(time if len(usable) == len(time) else time[usable])
     if not len(step) or step.min() > 0:
         return usable, []
@@ -151,7 +151,7 @@ def _longest_rise(time: np.ndarray) -> np.ndarray:
 
 
 def _steadiness(name: str, time: np.ndarray, begin: float) -> tuple[float, list[str]]:
-    """The usual step, and sentences on gaps and jitter, places told from `begin`."""
+    """The usual step, and sentences on gaps and jitter with times counted from `begin`."""
     step = np.diff(time)
     least, most = float(step.min()), float(step.max())
     period = float(np.median(step))
@@ -162,7 +162,7 @@ def _steadiness(name: str, time: np.ndarray, begin: float) -> tuple[float, list[
             f"{name}: {counted(int((step > GAP * period).sum()), 'gap')} longer than {GAP:g} periods of {period:.4g} "
             f"s, the longest {most:.4g} s at {time[worst] - begin:.3f} s; left as gaps."
         )
-    if max(most - period, period - least) > _JITTER * period:  # else none is off by so much
+    if max(most - period, period - least) > _JITTER * period:  # else no step is that far off
         off = float(np.quantile(np.abs(step - period), 0.95))
         if off > _JITTER * period:
             notes.append(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class ChannelEntry:
-    """One column that is a channel. `missing`: the number that stands for no value. `watch`: may it be judged."""
+    """One column that is a channel. `missing`: the number that means no value. `watch`: whether it may be judged."""
 
     name: str
     column: str

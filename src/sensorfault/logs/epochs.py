@@ -1,4 +1,4 @@
-"""Satellites' epochs out of a log of one clock: a row for each, and beside it what happened since the one before."""
+"""Satellite epochs of a log: one row per epoch, with the inertial rows since the epoch before."""
 
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -12,13 +12,13 @@ PLACE = ("x_m", "y_m", "z_m")
 SPEED = ("vx_m_s", "vy_m_s", "vz_m_s")
 ON_L1 = "GEJ"  # systems whose Doppler is of L1
 RANGE, DOPPLER, CN0 = "corrected_m", "doppler_hz", "cn0_dbhz"
-LATE = 5.0  # times its usual length: a longer row is a hole
+LATE = 5.0  # times its usual length: a longer row is a gap
 
 
 class Epoch(NamedTuple):
-    """What a navigation filter takes besides pseudoranges, T epochs of S satellites and R rows between two of them.
+    """Input of a navigation filter besides pseudoranges: T epochs of S satellites, R rows between two of them.
 
-    Rows that are not there have no length. `ok`: all six numbers came, and the row is no hole.
+    Missing rows have length 0. `ok`: all six numbers arrived, and the row is not a gap.
     """
 
     gyro: Float[Any, "*T R 3"]  # turn rate in body axes [rad/s]
@@ -32,7 +32,7 @@ class Epoch(NamedTuple):
 
 
 class Cut(NamedTuple):
-    """Epochs: when they end [s], what was measured of the satellites, what of it is new, and the rest."""
+    """Epochs: their end times [s], the measurements of the satellites, which of them are new, and the rest."""
 
     time: Float[np.ndarray, " T"]
     value: Float[np.ndarray, "T C"]
@@ -44,9 +44,8 @@ class Cut(NamedTuple):
 class Framing:
     """How a log becomes epochs: an epoch ends with the row in which a pseudorange is new, or with the R-th row.
 
-    `satellites`: by name, those that the log lacks stay silent. `inertial`: paths of the gyro's x, y, z and the
-    accelerometer's, or none. `wheel`: path of the speed by the wheels, or none. `rates`: range rates as well, by the
-    Dopplers of satellites on L1.
+    `satellites`: by name; those that the log lacks have no values. `inertial`: paths of gyro x, y, z and accelerometer
+    x, y, z, or none. `wheel`: path of the wheel speed, or none. `rates`: also range rates, from the Dopplers on L1.
     `rows`: R. `tick_s`: the usual length of a row, `period_s`: of an epoch.
     """
 
@@ -83,7 +82,7 @@ class Framing:
 
     @property
     def nothing(self) -> Epoch:
-        """One epoch's block of the right shape, in which nothing came."""
+        """One epoch's block of the right shape, without measurements."""
         rows, satellites = self.rows, len(self.satellites)
         three = np.zeros((rows, 3))
         far = np.full((satellites, 3), np.nan)
@@ -145,7 +144,7 @@ class Framing:
         return Cut(time[ends], judged, marks, epoch)
 
     def _parted(self, value: Float[np.ndarray, "T n"], fresh: Bool[np.ndarray, "T n"]) -> tuple[Any, Any, Any, Any]:
-        """Inertial rows (T, 6), the wheels' speed (T,), what is told of each satellite (T, S, n), what of it is new."""
+        """Inertial rows (T, 6), wheel speed (T,), satellites' values (T, S, n), and which of them are new."""
         rows, lead = len(value), len(self.inertial) + bool(self.wheel)
         sky = value[:, lead:].reshape(rows, len(self.satellites), -1)
         if self.rates:
@@ -199,7 +198,7 @@ def framing(log: Log, satellites: tuple[str, ...], rates: bool, wheel: str = "")
 
 
 class Gather:
-    """Rows as they come, one by one, until they make an epoch."""
+    """Collects rows one by one until they make an epoch."""
 
     def __init__(self, framing: Framing) -> None:
         self._framing = framing

@@ -1,16 +1,16 @@
-"""Zero-order hold: a file that repeats a sensor's last measurement until the next. A repeated row says nothing."""
+"""Zero-order hold: values that a file repeats between measurements. A repeated row is not a new measurement."""
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 HELD_SHARE = 0.3  # a sensor is held if more than this share of its measurements is repeated in the next row
-STALE = 10.0  # a receiver that brings nothing new for so many of its periods has fallen silent
+STALE = 10.0  # a receiver without a new measurement for this many periods has dropped out
 _REGULAR = 0.88  # share of measurements that last as long as usual, give or take a row
 _SHORTEST = 0.6  # one in five may last for less than this share of the usual
 
 
 def repeats(value: Float[np.ndarray, "T C"]) -> Bool[np.ndarray, " T"]:
-    """Rows in which every channel is what it was in the row before that had any value."""
+    """Rows in which every channel equals the last row with any value."""
     present = np.flatnonzero(_any_finite(value))
     rows = value if len(present) == len(value) else value[present]
     same = np.ones(max(len(rows) - 1, 0), bool)
@@ -29,17 +29,16 @@ def share_repeated(value: Float[np.ndarray, "T C"]) -> float:
 
 
 def share_old(value: Float[np.ndarray, "T C"], fresh: Bool[np.ndarray, "T C"]) -> float:
-    """Share of the rows with a value that bring no new measurement of any channel."""
+    """Share of the rows with a value that have no new measurement of any channel."""
     present = int(_any_finite(value).sum())
     return 1 - float(any_of(fresh).sum()) / present if present else 0.0
 
 
 def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
-    """Whether the rows are a held sensor's: many measurements last for several rows, all for about as many.
+    """Whether the sensor is held: many of its measurements are repeated, about equally often.
 
-    Measurements are counted, not rows: one long standstill (a parked car, an airspeed of zero) holds nothing. And a
-    coarse reading that happens not to change lasts for one row as often as for many: that is no hold either. Rows in
-    which the sensor said nothing do not count: one that speaks now and then holds nothing.
+    Measurements are counted, not rows, so one long standstill (a parked car, an airspeed of zero) is no hold. A coarse
+    reading that happens not to change repeats irregularly; that is no hold either. Rows without a value do not count.
     """
     value = value[_any_finite(value)]
     start = np.flatnonzero(~repeats(value))
@@ -55,9 +54,9 @@ def looks_held(value: Float[np.ndarray, "T C"]) -> bool:
 
 
 def stale(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"], period_s: float) -> Bool[np.ndarray, " T"]:
-    """Rows more than STALE periods after the last measurement: what is still held there is no value any more.
+    """Rows more than STALE periods after the last measurement: a value that is still repeated there is too old.
 
-    Only for a sensor whose epochs are known: without them a parked car looks just the same.
+    Only for a sensor with an epoch column: without it, a parked car looks the same.
     """
     last = np.maximum.accumulate(np.where(any_of(fresh), time, time[0]))
     late: Bool[np.ndarray, " T"] = time - last > STALE * period_s
@@ -65,7 +64,7 @@ def stale(time: Float[np.ndarray, " T"], fresh: Bool[np.ndarray, "T C"], period_
 
 
 def changes(epoch: Float[np.ndarray, " T"]) -> Bool[np.ndarray, " T"]:
-    """Rows in which an epoch column holds another number than in the row before; NaN: nothing has arrived yet."""
+    """Rows in which an epoch column differs from the row before; NaN: no measurement yet."""
     known = np.isfinite(epoch)
     new: Bool[np.ndarray, " T"] = known.copy()
     new[1:] &= ~(known[:-1] & (epoch[1:] == epoch[:-1]))

@@ -1,4 +1,4 @@
-"""Parts of a file, one after the other -> consecutive pieces of the log that the file as a whole would be."""
+"""Joins the parts of a long file to consecutive pieces of one log."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -16,14 +16,14 @@ from sensorfault.logs.stream import read_stream
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 
-MARGIN_S = 5.0  # what comes so late in a part is told with the next: a slow topic's rows may still belong to it
-_STAYS = 0.8  # the ticks stay with their stream unless another has come that is faster than this
-MOST_SAID = 20  # notes; each part has its own
+MARGIN_S = 5.0  # the last seconds of a part go to the next part: rows of a slow topic may still belong to them
+_STAYS = 0.8  # the ticks stay with their stream unless another stream is faster by this factor
+MOST_SAID = 20  # most notes that are kept; each part has its own
 
 
 @dataclass(frozen=True)
 class Said:
-    """What reading part by part found that a person should know.
+    """Notes on a file that was read part by part.
 
     `damage`: where the file could not be read. `notes`: that, then the first MOST_SAID other notes.
     """
@@ -34,7 +34,7 @@ class Said:
 
 @dataclass
 class Joining:
-    """Joins each part to the one before it, makes a log of the two, and hands on what is new in it."""
+    """Joins each part to the one before it, makes a log of both, and passes on its new rows."""
 
     path: Path
     known: VehicleFile
@@ -79,7 +79,7 @@ class Joining:
             self.hand_on(part)
 
     def said(self, first: tuple[str, ...]) -> Said:
-        """All that a person should know, `first` among it."""
+        """All notes; `first`: notes that come first."""
         if not np.isfinite(self.seen_s):
             raise LogError(f"{self.path}: one row is no log; name a file with at least two rows at different times.")
         for note in self._late.notes():
@@ -94,16 +94,17 @@ class Joining:
             self.more += 1
 
     def _log(self, tables: Tables, new: set[str], last: bool) -> Log | None:
-        """What is there of the described log, the sensors of absent tables without a value; None if nothing is.
+        """The described log, as far as its tables are there; sensors of missing tables have no values. None if no
+        table is there.
 
-        `new`: the tables that have brought something since the part before.
+        `new`: the tables with rows since the part before.
         """
         streams, there, able = [], [], []
         for entry in self.entries:
             source = tables.get(entry.table or "", None)
             if source is not None and len(source.frame) > 1:
                 mine = [sensor for sensor in self.known.sensors if sensor.file == entry.name]
-                # No period is one that the log must tell; 0 is told by it as well, but allows for a silent part.
+                # Period None is measured from the log; 0 is too, but allows a part without measurements.
                 quiet = tuple(replace(sensor, period_s=sensor.period_s or 0.0) for sensor in mine)
                 streams.append(read_stream(source, entry, quiet))
                 there.append(entry.name)
@@ -116,7 +117,7 @@ class Joining:
         begin_s = fastest.zero_s if self.begin_s is None else self.begin_s
         clock = put_on_one_clock(streams, piece=Piece(fastest, begin_s, first=self.begin_s is None, last=last))
         self.begin_s = begin_s
-        if self.known.zero_s is None:  # the first part's beginning is that of all
+        if self.known.zero_s is None:  # the first part begins the log
             self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
             present = replace(present, zero_s=self.known.zero_s)
         notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
@@ -124,20 +125,20 @@ class Joining:
 
 
 def _settled_s(log: Log) -> float:
-    """The last tick; the one before it, where it lies so far ahead that it may be a wild reading."""
+    """The last tick; the one before it where the last may be a wrong reading far ahead."""
     wild = len(log) > 2 and log.time[-1] - log.time[-2] > max(MARGIN_S, GAP * log.period_s)
     return float(log.time[-2] if wild else log.time[-1])
 
 
 def _recent(both: Source, now: Source | None) -> Source:
-    """The rows of this part, but at least two: a slow table's next comes when it comes."""
+    """The rows of this part, but at least two, as the next row of a slow table may come much later."""
     if now is not None and len(now.frame) > 1:
         return now
     return replace(both, frame=both.frame.tail(2), before=both.before + max(0, len(both.frame) - 2))
 
 
 def _widened(log: Log, known: VehicleFile) -> Log:
-    """With all channels of the vehicle, those that are not there without a value."""
+    """The log with all channels of the vehicle; missing ones have no values."""
     channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in known.sensors for c in s.channels)
     if channels == log.channels:
         return log

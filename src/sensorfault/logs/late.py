@@ -1,4 +1,4 @@
-"""Rows of a part with times that were handed on before: they are left out, and counted."""
+"""Leaves out and counts rows of a part that are older than rows already passed on."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,7 +14,7 @@ from sensorfault.logs.table import LogError
 
 @dataclass
 class _Rows:
-    """How many, and where the first of them stands."""
+    """How many rows, and the place of the first."""
 
     count: int = 0
     first: str = ""
@@ -27,7 +27,7 @@ class _Rows:
 
 @dataclass
 class _Table:
-    """A table as far as it has been heard of. `back`: rows behind others of its own; `behind`: only of other tables."""
+    """The table so far. `back`: rows older than its own last row; `behind`: rows older only than other tables' rows."""
 
     path: Path
     name: str
@@ -40,14 +40,14 @@ class _Table:
 
 
 class Late:
-    """Hears the parts of a file in turn."""
+    """Takes the parts of a file in order."""
 
     def __init__(self, entries: list[FileEntry]) -> None:
         self._entries = entries
         self._tables: dict[str, _Table] = {}
 
     def without(self, tables: Tables, handed_s: float) -> Tables:
-        """The described tables without rows of times up to this, on the common clock [s]."""
+        """The described tables without the rows up to this time on the common clock [s]."""
         named = {entry.table or "": entry for entry in self._entries}
         return {name: self._kept(one, named[name], handed_s) for name, one in tables.items() if name in named}
 
@@ -71,10 +71,10 @@ class Late:
         return replace(source, frame=source.frame.filter(~late)) if late.any() else source
 
     def notes(self) -> list[str]:
-        """What was left out.
+        """Notes on what was left out.
 
         Raises:
-            LogError: it is too much.
+            LogError: too many rows were.
         """
         said = []
         for table in self._tables.values():
@@ -88,5 +88,7 @@ class Late:
                 said.append(f"{table.name}: {back}; {counted(table.back.count, 'row')} left out.")
             if table.behind.count:
                 lost = f"{counted(table.behind.count, 'row')} (first {table.behind.first})"
-                said.append(f"{table.name}: {lost} stand far behind other tables' rows of their time; left out.")
+                said.append(
+                    f"{table.name}: {lost} come much later than rows of other tables with the same time; left out."
+                )
         return said

@@ -1,4 +1,4 @@
-"""Several files on one clock: the ticks are the fastest file's, and nothing arrives before its time."""
+"""Puts several files on one clock: the ticks are those of the fastest file, and no value arrives before its time."""
 
 from dataclasses import dataclass
 
@@ -10,8 +10,8 @@ from sensorfault.logs.phrase import counted
 from sensorfault.logs.resample import Resample
 from sensorfault.logs.stream import Stream
 
-MOST_FILLED, PER_ROW = 100_000, 10  # ticks put into gaps, or so many for each row; beyond it a clock has jumped
-SAME_S = 1e-6  # two clocks' readings this near are one time
+MOST_FILLED, PER_ROW = 100_000, 10  # most ticks put into gaps, or this many per row; more means that a clock has jumped
+SAME_S = 1e-6  # times of two clocks closer than this are equal
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class OneClock:
 
 @dataclass(frozen=True)
 class Piece:
-    """Streams that are a piece of a longer log. `ticks`: whose rows they are. `begin_s`: reading at the log's start.
+    """A piece of a longer log. `ticks`: the stream whose rows are the ticks. `begin_s`: clock at the log's start.
 
-    `first`, `last`: whether its first rows are among them, and its last; else what lies beyond the ticks is no loss.
+    `first`, `last`: whether the piece has the log's first and last rows; else rows outside its ticks are not lost.
     """
 
     ticks: Stream
@@ -42,7 +42,7 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: 
     """Put every stream on the ticks of the fastest.
 
     A slower stream's row goes to the first tick at or after its own time; of two rows for one tick the later stays.
-    Where the fastest file has a gap, ticks of its usual period go on, so that its silence can be noticed.
+    Where the fastest file has a gap, ticks continue with its usual period, so that the dropout can be detected.
     """
     if len(streams) == 1 and resample == "hold":
         (only,) = streams
@@ -66,7 +66,7 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: 
 
 
 def _filled(piece: Piece) -> tuple[np.ndarray, list[str]]:
-    """The ticks, and new ones inside each gap; a clock that jumps leaves a gap without, and a sentence says so."""
+    """The ticks, and new ones inside each gap; none where the clock jumps too far, which a note says."""
     time, period, begin = piece.ticks.time, piece.ticks.period_s, piece.begin_s - piece.ticks.zero_s
     step = np.diff(time)
     gaps = np.flatnonzero(step > GAP * period)
@@ -92,7 +92,7 @@ def _placed(
     """Each row on the first tick at or after its time."""
     shape = (len(ticks), stream.value.shape[1])
     value, fresh = np.full(shape, np.nan), np.zeros(shape, bool)
-    # The fastest's own rows lie on ticks exactly; what came long before the first tick is no news at it.
+    # Rows of the fastest stream lie exactly on ticks; a row long before the first tick is not new at it.
     tick = np.searchsorted(ticks, time - SAME_S, side="left")
     early, late = time <= ticks[0] - (stream.period_s if piece.first else SAME_S), tick == len(ticks)
     rows = np.flatnonzero(~(early | late))
@@ -100,7 +100,7 @@ def _placed(
     last = np.append(tick[rows][1:] != tick[rows][:-1], True) if len(rows) else np.zeros(0, bool)
     later = rows[last]
     value[tick[later]], fresh[tick[later]] = stream.value[later], stream.fresh[later]
-    # A row that another pushed off its tick was still news.
+    # A row that was dropped for a later one on the same tick still made the tick new.
     np.logical_or.at(fresh, tick[rows], stream.fresh[rows])
     fresh &= np.isfinite(value)
     notes = []
@@ -111,12 +111,12 @@ def _placed(
         )
     if len(rows) > len(later):
         lost = counted(len(rows) - len(later), "row")
-        notes.append(f"{stream.name}: {lost} fell on the tick of a later row and gave way to it.")
+        notes.append(f"{stream.name}: {lost} dropped: a later row has the same time step.")
     return value, fresh, notes
 
 
 def _interpolated(ticks: np.ndarray, time: np.ndarray, stream: Stream) -> tuple[np.ndarray, np.ndarray]:
-    """Straight lines between new measurements; nothing beyond the ends or across a gap."""
+    """Linear interpolation between new measurements; no values beyond the ends or across a gap."""
     value = np.full((len(ticks), stream.value.shape[1]), np.nan)
     for i in range(value.shape[1]):
         rows = np.flatnonzero(stream.fresh[:, i])

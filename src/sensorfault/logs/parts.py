@@ -1,4 +1,4 @@
-"""A long log part by part, in memory that does not grow with its file."""
+"""Reads a long log part by part, in memory that does not grow with the file."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +18,7 @@ from sensorfault.logs.vehicle import VehicleFile
 
 
 def file_of_parts(path: Path) -> Path | None:
-    """The file of a log that `read_parts` reads: itself, or the only one in a folder; None if there is none."""
+    """The file of a log that `read_parts` can read: itself, or the only one in a folder; None if there is none."""
     files = files_of(path)
     form = format_of(files[0]) if len(files) == 1 else None
     return files[0] if form is not None and form.parts else None
@@ -37,23 +37,22 @@ def read_parts(
     vehicle: str | Path | VehicleFile | None = None,
     tell: Callable[[float], None] = lambda share: None,
 ) -> Said:
-    """Read one file and hand it over part by part: `take` hears consecutive pieces of what `read` would return.
+    """Read one file part by part: `take` is called with consecutive pieces of what `read` would return.
 
-    Each part is read with the one before it, so that what is held, or comes at another rate, is what it is in the whole
-    log. Two things are not: periods and a recording's clock are told from a part, not from all of it. What
-    has times that were handed on before, as a clock goes back or a sensor is written down late, is left out and said;
-    of a sensor slower than the parts its first row, too. Without a vehicle.toml the columns are guessed, of a long file
-    from its beginning.
+    Each part is read with the one before it, so that held values and rates are those of the whole log. Two things
+    differ: periods and the clock of a recording are measured on a part. Rows older than rows already passed on (a clock
+    that goes back, a sensor that is written late) are left out, and a note says so; so is the first row of a sensor
+    slower than the parts. Without a vehicle.toml the columns are guessed from the beginning of the file.
 
     Raises:
-        LogError: a format that cannot be read in parts, or whatever keeps a part from being used.
+        LogError: a format that cannot be read in parts, or a part that cannot be used.
     """
     file = file_of_parts(path)
     if file is None:
         files = files_of(path)
         what = f"{len(files)} files" if len(files) > 1 else f"{known_format(files[0]).title}, which is read whole"
         able = ", ".join(sorted((one.title for one in registered() if one.parts), key=str.casefold))
-        raise LogError(f"{path}: this is {what}; what can be read part by part is one file of: {able}.")
+        raise LogError(f"{path}: this is {what}; give one file of a format that can be read part by part: {able}.")
     described = find_vehicle(path, vehicle)
     known = called_after(described, path) if described else guess(path, tell)
     used = {sensor.file for sensor in known.sensors}

@@ -1,4 +1,4 @@
-"""Small turns of phrase for notes and errors."""
+"""Numbers in words, for notes and errors."""
 
 from collections.abc import Sequence
 

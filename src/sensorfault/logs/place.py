@@ -1,4 +1,4 @@
-"""Where a log's files lie, and which entry of the vehicle file describes which."""
+"""Finds the files of a log, and the entry of the vehicle file that describes each."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,7 +16,7 @@ def files_of(path: Where) -> list[Path]:
     """The files of a log, by name: the one, the several, or the readable ones in the folder.
 
     Raises:
-        LogError: something is not there, or the folder has no readable file.
+        LogError: a file is not there, or the folder has no readable file.
     """
     if not isinstance(path, str | Path):
         files = [Path(one) for one in path]
@@ -34,12 +34,12 @@ def files_of(path: Where) -> list[Path]:
         files = [Path(path)]
     for file in files:
         if not file.exists():
-            raise LogError(f"{file}: there is no such file or folder; look at the path.")
+            raise LogError(f"{file}: there is no such file or folder; check the path.")
     return files
 
 
 def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> VehicleFile | None:
-    """The description named, or the one beside the log, or None.
+    """The given vehicle file, or the one beside the log, or None.
 
     Beside `drive.csv` that is `drive.vehicle.toml`, or a `vehicle.toml` which does not name another file.
     """

@@ -36,13 +36,13 @@ def read(
         resample: how slower files come to the ticks of the fastest. "hold": a measurement is put on the first tick
             at or after its own time and the other ticks stay empty. "linear": drawn between measurements, which looks
             into the future and smooths faults over; for plots, and for papers that ask for it.
-        tell: called with the share of a large file that has been read, 0 to 1.
+        tell: is called with the share of a large file that has been read, 0 to 1.
 
     Returns:
         The log on one clock: T rows, C channels, values in SI, NaN where nothing arrived.
 
     Raises:
-        LogError: whatever keeps the log from being used, in one sentence.
+        LogError: the log cannot be used; one sentence says why.
         MissingLibrary: polars, which reads and joins tables, is not installed.
         TypeError: `path` or `vehicle` is of a type that is none of these.
     """

@@ -77,7 +77,7 @@ def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callabl
 def log_of(
     vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tuple[str, ...], damage: tuple[str, ...]
 ) -> Log:
-    """The streams' channels in the order of the vehicle file."""
+    """The log of these streams, its channels in the order of the vehicle file."""
     start = clock.zero_s + float(clock.time[0])
     zero = start if vehicle.zero_s is None else vehicle.zero_s
     channels = [channel for stream in streams for channel in stream.channels]

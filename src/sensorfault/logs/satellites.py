@@ -1,4 +1,4 @@
-"""The satellites in a log as arrays, for what navigates with them: one slot each, which comes and goes."""
+"""The satellites of a log as arrays for navigation: one slot per satellite, NaN while it is not received."""
 
 from dataclasses import dataclass
 
@@ -35,7 +35,7 @@ class Satellites:
 
     @property
     def born(self) -> Bool[np.ndarray, "T S"]:
-        """Where a satellite has become usable that was not the tick before."""
+        """Ticks at which a satellite becomes usable."""
         usable = self.usable
         born = usable.copy()
         born[1:] &= ~usable[:-1]
@@ -60,8 +60,8 @@ def satellites(log: Log, systems: str = "GRECJ") -> Satellites:
     )
     if not names:
         raise LogError(
-            f"{log.name}: no satellite of {systems} has a corrected pseudorange and a place; read a log of raw "
-            "measurements with its ephemerides (a navigation file beside it)."
+            f"{log.name}: no raw satellite data with orbits of {systems}; read a log of raw "
+            "measurements and put its navigation file beside it."
         )
 
     def values(channel: str) -> Float[np.ndarray, "T S"]:

@@ -1,4 +1,4 @@
-"""One file of a log: its sensors' measurements in SI on the file's own clock."""
+"""One file of a log: the measurements of its sensors in SI on the file's own clock."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
 
 _NAMED = 6  # columns listed in one sentence
-_LOOK_ROWS = 100_000  # a hold nobody described shows in so many rows
+_LOOK_ROWS = 100_000  # share of repeated rows that suggests a hold
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         start, rate = read_tag(source.path.parent / file.tag, source.path, counter, clock.rows + source.first_line)
         zero = start + rate * clock.zero_s + file.offset_s
         notes.append(
-            f"{source.name}: {file.tag} ties its counter to GPS time; the counter runs "
+            f"{source.name}: {file.tag} gives its counter GPS time; the counter runs "
             f"{abs(rate - 1) * 1e6:.1f} ppm {'slow' if rate > 1 else 'fast'}, which was corrected."
         )
     time = clock.time if rate == 1.0 else clock.time * rate
@@ -85,7 +85,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
 
 
 class _Gaps:
-    """Gathers what cells hold no usable number, to say it in two sentences for the whole file."""
+    """Collects cells without a usable number, for two sentences on the whole file."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -107,7 +107,7 @@ class _Gaps:
 
 
 def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, silent: bool) -> np.ndarray:
-    """One column in SI on the kept rows, NaN where it holds no value; `silent`: it may hold none at all."""
+    """One column in SI on the kept rows, NaN without a value; `silent`: it may have no value at all."""
     value = source.column(channel.column).cast(pl.Float64).to_numpy()
     absent = ~np.isfinite(value)
     if absent.any():
@@ -119,7 +119,7 @@ def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, s
     if absent.all() and not silent:
         raise LogError(
             f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml, or write "
-            "period_s into its sensor if that was silent."
+            "period_s into its sensor if the sensor was silent."
         )
     si: Float[np.ndarray, " T"] = to_si(value, channel.unit)
     if absent.any():
@@ -151,24 +151,24 @@ def _stale_note(file: str, sensor: str, late: np.ndarray, period_s: float) -> li
     if not late.any():
         return []
     return [
-        f"{file}: sensor '{sensor}' brought nothing new for longer than {STALE * period_s:.3g} s at a time; "
-        f"{int(late.sum())} rows in which the file held on to the last measurement count as absent."
+        f"{file}: sensor '{sensor}' had no new measurement for longer than {STALE * period_s:.3g} s at a time; "
+        f"{int(late.sum())} rows that repeat its last measurement count as missing."
     ]
 
 
 def _held_note(name: str, sensor: SensorEntry, value: np.ndarray, fresh: np.ndarray, period: float) -> list[str]:
     if sensor.held and not np.isfinite(period):
-        return [f"{name}: sensor '{sensor.name}' is held, and fewer than two measurements came."]
+        return [f"{name}: sensor '{sensor.name}' is held, but has fewer than two measurements."]
     if sensor.held:
         share = share_old(value, fresh)
         return [
-            f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat, a measurement comes every "
-            f"{period:.3g} s."
+            f"{name}: sensor '{sensor.name}' is held: {share:.0%} of its rows repeat the last measurement, "
+            f"a new one comes every {period:.3g} s."
         ]
     if looks_held(value[:_LOOK_ROWS]):
         share = share_repeated(value)
         return [
-            f"{name}: {share:.0%} of the rows of sensor '{sensor.name}' repeat the row before, yet count as new; "
-            f"if the file holds the last one, write held = true in [sensor.{sensor.name}]."
+            f"{name}: {share:.0%} of the rows of sensor '{sensor.name}' repeat the row before, but count as new; "
+            f"if the file repeats the last measurement, write held = true in [sensor.{sensor.name}]."
         ]
     return []

@@ -1,4 +1,4 @@
-"""What a log holds, sensor by sensor: rates, gaps, held values; of a long log part by part."""
+"""A log in numbers, sensor by sensor: rates, gaps, held values; of a long log part by part."""
 
 from dataclasses import dataclass
 
@@ -14,11 +14,10 @@ MOST_STEPS = 1 << 20  # the usual step of a sensor is that of so many from the b
 
 @dataclass(frozen=True)
 class SensorSummary:
-    """One sensor. Rate in new measurements a second; `held`: share of its values that only repeat the last one.
+    """One sensor. Rate in new measurements per second; `held`: share of its values that repeat the last one.
 
-    `gaps`: times without a measurement that are longer than three usual periods; `longest_gap_s` begins at `gap_at_s`.
-    `missing`: share of the ticks of its time that are without any value of it.
-    What is not known is None: of a sensor that measured less than twice, the rate.
+    `gaps`: pauses longer than three usual periods; the longest lasts `longest_gap_s` from `gap_at_s`. `missing`: share
+    of the ticks without any value. Unknown numbers are None, as the rate of a sensor with fewer than two measurements.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""A log: what every sensor said, on one clock."""
+"""A log: the measurements of all sensors on one clock."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -25,8 +25,8 @@ class LogError(ValueError):
 class Channel:
     """One number of one sensor.
 
-    `unit` is what a person reads; values in a Log are SI. `watch`: whether a method may judge them (a latitude is not a
-    stationary signal; its silence is still noticed).
+    `unit` is for display; values in a Log are SI. `watch`: whether a method may judge them (a latitude is not a
+    stationary signal; only its dropouts are detected).
     """
 
     name: str
@@ -45,7 +45,7 @@ class Sensor:
     """A device that delivers its channels together.
 
     `period_s`: the usual time between two new measurements. `held`: the file repeats the last measurement until the
-    next (zero-order hold), so a repeated row says nothing.
+    next (zero-order hold), so a repeated row is not a new measurement.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Log:
     `time` [s] rises strictly and starts at 0 at the first row read (`epoch_s`, Unix time, if the file knew it).
     `value` is SI, NaN where nothing arrived. `fresh` marks new measurements, not held ones: fresh implies a value.
     `wheelbase_m` and `steering_ratio` are the vehicle's, if its file says them.
-    `notes`: what reading found that a person should know (clock faults, held rows, guesses), one sentence each.
+    `notes`: remarks from reading (clock faults, held rows, guesses), one sentence each.
     `block`: what a residual generator takes besides, arrays with an entry for each tick (see `epochs`).
     `damage`: those of them that say where a file could not be read, and what was read all the same.
     """
@@ -82,7 +82,7 @@ class Log:
         rows, width = self.value.shape
         if self.time.shape != (rows,) or self.fresh.shape != (rows, width) or len(self.channels) != width:
             raise LogError(
-                f"{self.name}: {rows} rows of {width} values do not go with {self.time.size} times, "
+                f"{self.name}: {rows} rows of {width} values do not fit {self.time.size} times, "
                 f"{self.fresh.shape} fresh marks and {len(self.channels)} channels; give one of each a row or column."
             )
 
@@ -123,7 +123,7 @@ class Log:
         return float(np.median(np.diff(self.time))) if len(self) > 1 else float("nan")
 
     def index(self, path: str) -> int:
-        """Column of the channel `sensor.channel`; a bare channel name will do where it is unique.
+        """Column of the channel `sensor.channel`; the channel's name alone is enough where it is unique.
 
         Raises:
             LogError: no such channel, or several.

@@ -1,4 +1,4 @@
-"""A TOML table read strictly: an unknown key or a wrong type is a sentence, not a surprise later."""
+"""A TOML table read strictly: an unknown key or a wrong type is an error."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from sensorfault.logs.table import LogError
 
 @dataclass(frozen=True)
 class TomlTable:
-    """A TOML table that takes no key it does not know."""
+    """A TOML table that refuses unknown keys."""
 
     content: Any  # a mapping, or the first use says so
     where: str

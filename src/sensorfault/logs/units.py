@@ -1,4 +1,4 @@
-"""Units at the edge, SI inside. A unit is a factor to SI; unknown units are kept as they are and only named."""
+"""Units of files and SI. A unit is a factor to SI; unknown units are kept unchanged."""
 
 from typing import TypeVar
 

@@ -1,4 +1,4 @@
-"""`vehicle.toml`: what the columns of a log are. Written by `sensorfault init`, corrected by a person.
+"""`vehicle.toml`: what the columns of a log are. `sensorfault init` writes it, a person corrects it.
 
 [vehicle]
 name = "dresden"
@@ -19,12 +19,12 @@ tag = "imu.csv.tag"        # optional: RTKLIB's time tag, which ties a counter t
 file = "log"               # may be left out if there is one file
 held = true                # the file repeats the last measurement until the next
 epoch = "time"             # optional: a column that changes exactly when a measurement arrives
-watch = true               # false: no channel of it is judged, only its silence is noticed
-period_s = 0.1             # optional: the usual time between measurements, where the log cannot tell
+watch = true               # false: no channel of it is judged, only its dropouts are detected
+period_s = 0.1             # optional: the usual time between measurements, where the log does not show it
 [sensor.gnss.channel]
 speed = { column = "speed", unit = "km/h" }
 course = { column = "course", unit = "deg", watch = false }  # this channel alone is not judged
-range = { column = "range", unit = "m", missing = -1 }    # -1 stands for no value
+range = { column = "range", unit = "m", missing = -1 }    # -1 means no value
 far = { column = "far", unit = "m", epoch = "far_time" }  # a channel that arrives at its own times
 """
 
@@ -80,7 +80,7 @@ class VehicleFile:
         try:
             table = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
-            raise LogError(f"{where}: this is not TOML ({error}); mend that line.") from None
+            raise LogError(f"{where}: this is not TOML ({error}); correct that line.") from None
         return _vehicle(TomlTable(table, where, ""), where)
 
     def to_toml(self) -> str:
@@ -106,7 +106,7 @@ def _vehicle(top: TomlTable, where: str) -> VehicleFile:
     sizes = {name: head.number(name) for name in ("wheelbase_m", "steering_ratio")}
     for name, size in sizes.items():
         if size is not None and not 0 < size < float("inf"):
-            raise LogError(f"{where}: [vehicle] {name} = {size:g} is none; give a number above 0, or leave it out.")
+            raise LogError(f"{where}: [vehicle] {name} = {size:g} must be positive; correct it, or leave it out.")
     files = tuple(_file(name, table) for name, table in top.tables("file"))
     sensors = tuple(_sensor(name, table, files) for name, table in top.tables("sensor"))
     if not files or not sensors:
@@ -146,7 +146,9 @@ def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> Sensor
         listed = ", ".join(entry.name for entry in files)
         raise LogError(f"{table.where}: [{table.path}] file = '{file}' is not described; take one of {listed}.")
     if "." in name:
-        raise LogError(f"{table.where}: the sensor name '{name}' has a dot, which parts sensor from channel; take '_'.")
+        raise LogError(
+            f"{table.where}: the sensor name '{name}' has a dot, which separates sensor and channel; use '_'."
+        )
     watch = table.flag("watch", True)
     channels = tuple(_channel(key, inner, watch) for key, inner in table.tables("channel"))
     if not channels:
@@ -162,7 +164,7 @@ def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> Sensor
 
 
 def _channel(name: str, table: TomlTable, watch: bool) -> ChannelEntry:
-    """`watch`: what its sensor says, where it says nothing itself."""
+    """`watch`: that of its sensor, unless the channel sets its own."""
     table.only("column", "unit", "missing", "epoch", "watch")
     column, unit = table.text("column"), table.text("unit") or ""
     if column is None:

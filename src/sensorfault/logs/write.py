@@ -29,7 +29,7 @@ def write(log: Log, path: str | Path) -> Path:
     themselves, the same fresh marks.
 
     Returns:
-        Where the vehicle file is.
+        The path of the vehicle file.
 
     Raises:
         LogError: another suffix than .csv or .parquet, or the folder cannot be written to.
@@ -44,7 +44,9 @@ def write(log: Log, path: str | Path) -> Path:
     writers: dict[str, Callable[[Path], object]] = {".csv": frame.write_csv, ".parquet": frame.write_parquet}
     writer = writers.get(path.suffix.lower())
     if writer is None:
-        raise LogError(f"{path}: a log is written as {' or '.join(writers)}, not as '{path.suffix}'; change the name.")
+        raise LogError(
+            f"{path}: a log can be written as {' or '.join(writers)}, not as '{path.suffix}'; change the name."
+        )
     beside = path.with_suffix(f".{VEHICLE}")
     text = vehicle.to_toml()
     _appear(path, writer)
@@ -116,4 +118,4 @@ def _appear(path: Path, writer: Callable[[Path], object]) -> None:
             writer(temporary)
     except (OSError, pl.exceptions.PolarsError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise LogError(f"{path}: cannot be written ({reason}); look at the folder and its rights.") from None
+        raise LogError(f"{path}: cannot be written ({reason}); check the folder and its permissions.") from None

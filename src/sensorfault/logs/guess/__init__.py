@@ -1,4 +1,4 @@
-"""Guess: what the columns of an unknown log are."""
+"""Guesses what the columns of an unknown log are."""
 
 from collections.abc import Callable
 
@@ -12,7 +12,7 @@ def guess(path: Where, tell: Callable[[float], None] = lambda share: None) -> Ve
 
     Args:
         path: a file, a folder, or several files of one drive.
-        tell: hears how much of a large file has been read, 0 to 1.
+        tell: is called with the share of a large file that has been read, 0 to 1.
 
     Raises:
         LogError: nothing can be read, no file has a time column, or the files are logs of different drives.

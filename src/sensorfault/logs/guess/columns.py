@@ -19,9 +19,9 @@ _STEADY = 0.15  # relative spread below which three axes have a steady length
 
 
 OTHER_TIME = "another time, or bookkeeping of it"
-QUALITY = "quality or state, no measurement of motion"
+QUALITY = "quality or state, not a measurement of motion"
 BEACON = frozenset({"range", "position", "depth"})  # what a beacon tells of itself
-NO_SENSOR = "no sensor's reading, as this format is documented"
+NO_SENSOR = "not a measurement, by the documentation of the format"
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def measurements(
 
 
 def beacons_of(meanings: Iterable[Meaning]) -> set[str]:
-    """Stems of those who say how far away they are and where: `leader1_range`, `leader1_latitude`."""
+    """Stems of beacons that give their range and position: `leader1_range`, `leader1_latitude`."""
     kinds: dict[str, set[str]] = {}
     for meaning in meanings:
         kinds.setdefault(meaning.stem, set()).add(meaning.kind)
@@ -83,19 +83,19 @@ def beacons_of(meanings: Iterable[Meaning]) -> set[str]:
 
 
 def _no_measurement(column: Column, of_beacon: bool) -> str:
-    """Why a column is none; where a beacon lies is one, even if it lies there for ever."""
+    """Why a column is not a measurement; a beacon's position is one even if it never changes."""
     known = column.value[np.isfinite(column.value)]
     if not len(known):
         return "holds no value at all"
     if (known == known[0]).all() and not (of_beacon and column.meaning.kind in BEACON):
         return "constant"
     if column.meaning.kind == "temperature":
-        return "a temperature, no measurement of motion"
+        return "a temperature, not a measurement of motion"
     if not column.meaning.kind and (known == np.round(known)).all():
         if len(np.unique(known)) <= _FEW:
             return "few whole numbers: a state or a counter"
         if (np.diff(known) >= 0).all():
-            return "only rises: a counter"
+            return "only increases: a counter"
     return ""
 
 

@@ -1,4 +1,4 @@
-"""Which channels are one device: what a receiver or an attitude filter delivers together is one sensor."""
+"""Which channels are one device: values that a receiver or an attitude filter sends together are one sensor."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ _SLACK, _STEADY = 0.25, 0.7  # a pace is steady if more than this share of the s
 
 @dataclass(frozen=True)
 class Delivery:
-    """How measurements come. `arrived`: rows that bring one; `old`: share of the rows with a value that bring none."""
+    """How measurements arrive. `arrived`: rows with a new one; `old`: share of the rows with a value that repeat it."""
 
     held: bool
     epoch: str | None
@@ -46,8 +46,8 @@ class Device:
 def find_devices(parts: Mapping[str, list[Column]], source: Source, clock: Clock) -> list[Device]:
     """One device for each part, or for several that are one receiver's and come together.
 
-    An epoch column tells when a receiver spoke, whatever its outputs did. Where there is none, any change of any
-    channel counts as news of all, so that parts which come on rows or at rates of their own stay apart.
+    An epoch column shows when a receiver sent a measurement. Without one, a change of any channel counts as a new
+    measurement of all, so parts that come in rows of their own or at other rates become sensors of their own.
     """
     found = {name: Device(name, columns, _delivery(columns, source, clock)) for name, columns in parts.items()}
     for name, lead, others in _DEVICES:
@@ -105,7 +105,7 @@ def _delivery(columns: Sequence[Column], source: Source, clock: Clock) -> Delive
 
 
 def _epoch(source: Source, value: Float[np.ndarray, "T C"], clock: Clock) -> str | None:
-    """A time or sequence column that changes as often as the held sensor's liveliest channel, or somewhat oftener."""
+    """A time or sequence column that changes as often as the held sensor's most active channel, or slightly more."""
     moved = max(int((~repeats(channel[:, None])).sum()) for channel in value.T)
     best: tuple[float, str] | None = None
     for name in source.frame.columns:

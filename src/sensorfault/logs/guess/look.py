@@ -35,7 +35,7 @@ class Guess:
 
     @property
     def called(self) -> str:
-        """What a sentence calls it: its file, and its table where that holds several."""
+        """Its name in messages: its file, and its table where the file holds several."""
         return f"{self.path.name} ({self.file.table})" if self.file.table else self.path.name
 
     @property
@@ -46,7 +46,7 @@ class Guess:
 
 @dataclass(frozen=True)
 class Look:
-    """What one file holds: tables that are sensors, why others are none, and what a person should know of it."""
+    """What one file holds: tables that are sensors, reasons against the others, and notes."""
 
     guesses: list[Guess]
     errors: list[LogError]
@@ -67,13 +67,13 @@ def look_at(file: Path, tell: Callable[[float], None]) -> Look:
         if guesses:
             used = [one.file.table or "" for one in guesses]
             said.append(
-                f"{file.name}: a log of {stock.name}; sensors are in {', '.join(used)}. No sensors, so left out: "
+                f"{file.name}: a log of {stock.name}; sensors are in {', '.join(used)}. Left out as not sensors: "
                 f"{', '.join(sorted(set(tables) - set(used)))}."
             )
             return Look(guesses, errors, list(dict.fromkeys(said)))
     commands = [name for name in tables if _COMMAND.search(name)]
     if commands:
-        said.append(f"{file.name}: commands, no measurements, so left out: {', '.join(commands)}.")
+        said.append(f"{file.name}: left out, as they are commands: {', '.join(commands)}.")
     guesses, errors = _guess_tables({name: one for name, one in tables.items() if name not in commands}, None)
     return Look(guesses, errors, list(dict.fromkeys(said)))
 
@@ -96,8 +96,8 @@ def look_at_topics(topics: Mapping[str, Path], others: list[str], tell: Callable
             errors.append(error)
     used = [one.path.name for one in guesses]
     left = sorted([*others, *(tables[name].path.name for name in tables if tables[name].path.name not in used)])
-    out = f" No sensors, so left out: {', '.join(left)}." if left else ""
-    return Look(guesses, errors, [f"Topics of {PX4.name}, a file each; sensors are in {', '.join(used)}.{out}"])
+    out = f" Left out as not sensors: {', '.join(left)}." if left else ""
+    return Look(guesses, errors, [f"Topics of {PX4.name}, one file each; sensors are in {', '.join(used)}.{out}"])
 
 
 def _guess_tables(tables: Tables, fields: Mapping[str, Fields] | None) -> tuple[list[Guess], list[LogError]]:

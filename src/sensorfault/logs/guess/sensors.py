@@ -14,12 +14,12 @@ from sensorfault.logs.readers.source import Source
 from sensorfault.logs.units import to_si
 
 _UNWATCHED = {
-    "position": "a position is not stationary: only its silence is noticed",
-    "local_position": "a position is not stationary: only its silence is noticed",
-    "height": "a height is not stationary: only its silence is noticed",
-    "depth": "a depth is not stationary: only its silence is noticed",
-    "heading": "an angle that wraps: only its silence is noticed",
-    "quaternion": "a quaternion is not stationary: only its silence is noticed",
+    "position": "a position is not stationary: only dropouts are detected",
+    "local_position": "a position is not stationary: only dropouts are detected",
+    "height": "a height is not stationary: only dropouts are detected",
+    "depth": "a depth is not stationary: only dropouts are detected",
+    "heading": "an angle that wraps: only dropouts are detected",
+    "quaternion": "a quaternion is not stationary: only dropouts are detected",
 }
 _USUAL_UNIT = {
     "magnetometer": "uT", "velocity": "m/s", "airspeed": "m/s", "local_position": "m", "range": "m", "depth": "m",
@@ -90,7 +90,7 @@ def _blind(column: Column) -> str:
     if kind == "barometer" and column.meaning.axis == "altitude":
         kind = "height"
     wanders = kind == "" and _wanders(column.value[np.isfinite(column.value)])
-    return _UNWATCHED.get(kind, "its level wanders: only its silence is noticed" if wanders else "")
+    return _UNWATCHED.get(kind, "its level drifts: only dropouts are detected" if wanders else "")
 
 
 def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray | None) -> tuple[str, str]:

@@ -1,7 +1,7 @@
 """Logs of autopilots: which of their many messages are sensors, and what their fields are.
 
 PX4: its uORB message definitions (msg/*.msg, comments). ArduPilot: its log messages' FMTU units. MAVLink: common.xml.
-What an autopilot estimates (positions, velocities, biases), commands or keeps books of is no sensor.
+Estimates (positions, velocities, biases), commands and statistics of an autopilot are not sensors.
 """
 
 from collections.abc import Collection, Mapping
@@ -15,7 +15,7 @@ Fields = Mapping[str, Meaning]
 
 @dataclass(frozen=True)
 class Stock:
-    """An autopilot. `tells`: one of these tables gives it away. `parts`: for each, the first table that is there."""
+    """An autopilot. `tells`: one of these tables identifies it. `parts`: for each, the first table that is there."""
 
     name: str
     tells: frozenset[str]

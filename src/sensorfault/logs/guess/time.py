@@ -21,10 +21,10 @@ def guess_time(source: Source) -> tuple[str, str, str]:
     """Time column, its unit and the reason.
 
     Raises:
-        LogError: no column rises like a time.
+        LogError: no column increases like a time.
     """
     if source.time is not None:
-        why = f"{source.path.suffix} files say their time"
+        why = f"{source.path.suffix} files have a time column"
         return source.time, source.unit or _unix_unit(source.frame[source.time]) or "s", why
     ranked = []
     for i, name in enumerate(source.frame.columns):
@@ -44,11 +44,11 @@ def guess_time(source: Source) -> tuple[str, str, str]:
         ranked.append((named, _is_unix(column, unit), round(share, 2), -i, name, unit))
     if not ranked:
         raise LogError(
-            f"{source.path}: there is no time column: no column rises from row to row; add one, or name it in "
+            f"{source.path}: there is no time column: no column increases from row to row; add one, or name it in "
             "vehicle.toml if the rows are out of order."
         )
     named, unix, _, _, name, unit = max(ranked)
-    why = "by its name" if named else "rises from row to row"
+    why = "by its name" if named else "increases from row to row"
     return name, unit, f"{why}; unit {'as Unix time' if unix else 'by name and usual interval'}"
 
 

@@ -1,4 +1,4 @@
-"""Units from values, where the name says none."""
+"""Units from values, where the name has none."""
 
 import numpy as np
 from jaxtyping import Float
@@ -22,11 +22,11 @@ def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     for unit, gravity in (("m/s^2", STANDARD_GRAVITY), ("g", 1.0), ("mg", 1000.0)):
         if 0.8 < length / gravity < 1.25:
             return unit, f"its usual length {length:.4g} is gravity in {unit}"
-    return "m/s^2", f"a guess: its usual length {length:.4g} is gravity in no unit"
+    return "m/s^2", f"a guess: in no unit is its usual length {length:.4g} gravity"
 
 
 def rate_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
-    """By size: nothing that carries people turns at 200 deg/s for long."""
+    """By size: vehicles do not turn at 200 deg/s for long."""
     known = value[np.isfinite(value).any(axis=1)]
     fast = float(np.quantile(np.nanmax(np.abs(known), axis=1), 0.95))
     unit = "deg/s" if fast > _FAST_RAD_S else "rad/s"

@@ -21,7 +21,7 @@ _RAW = "_uncalibrated"
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
-    """What `guess` says."""
+    """Does the work of `guess`."""
     files = files_of(path)
     topics = topics_of(files)
     others = [file.name for file in files if file not in topics.values()]
@@ -32,7 +32,7 @@ def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
         raise (
             errors[0]
             if len(errors) == 1
-            else LogError(f"{path}: none of its {len(errors)} files or tables is a log; the first: {errors[0]}")
+            else LogError(f"{path}: none of its {len(errors)} files or tables can be used; the first: {errors[0]}")
         )
     notes = [*(note for look in looked for note in look.notes), *(f"Left out: {error}" for error in errors)]
     if not topics:
@@ -82,10 +82,10 @@ def _refuse_several_drives(guesses: list[Guess]) -> None:
 
 
 def _calibrated(guesses: list[Guess]) -> tuple[list[Guess], list[str]]:
-    """The files without those that hold another's raw readings: one device must not vouch for itself."""
+    """The files without those that hold the raw readings of another: a device must not confirm itself."""
     known = {one.stem for one in guesses}
     raw = [one for one in guesses if one.stem.removesuffix(_RAW) in known - {one.stem}]
-    notes = [f"{one.path.name}: left out, the readings of another file's sensor before calibration." for one in raw]
+    notes = [f"{one.path.name}: left out: uncalibrated readings of a sensor in another file." for one in raw]
     return [one for one in guesses if one not in raw], notes
 
 
@@ -102,7 +102,7 @@ def _missed(guesses: list[Guess]) -> list[str]:
             f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY, NO_SENSOR)
         ]
         if out:
-            said.append(f"{one.called}: columns left out as no measurements: {', '.join(out)}.")
+            said.append(f"{one.called}: columns left out, as they are not measurements: {', '.join(out)}.")
     return said
 
 
@@ -110,7 +110,7 @@ def _untied(guesses: list[Guess]) -> list[str]:
     """A sentence for each file whose clock has nothing to do with the others'."""
     tied = [one for one in guesses if one.clock.is_unix or one.file.tag]
     return [
-        f"{one.path.name}: its clock is not Unix time like the others'; set offset_s in vehicle.toml."
+        f"{one.path.name}: its clock is not Unix time like those of the other files; set offset_s in vehicle.toml."
         for one in guesses
         if tied and one not in tied
     ]

@@ -1,4 +1,4 @@
-"""What a column's name says: kind of sensor, axis, unit."""
+"""What the name of a column means: kind of sensor, axis, unit."""
 
 import re
 from collections.abc import Collection
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from sensorfault.logs.units import known, spelled
 
-# Names of what is no measurement of motion: quality, state, bookkeeping. It may be added by hand.
+# Names that are not measurements of motion: quality, state, statistics. It may be added by hand.
 _QUALITY = re.compile(
     r"(^|_)([ghptv]dop|dop|ep[ehv]|sd[neu]+|sdv[neu]+|std|stddev|sigma|cov(ariance)?|var(iance)?|accuracy|acc_?est|"
     r"fix|fix_?type|fix_?quality|quality|q|ns|sats?|satellites?|numsats?|num_?sv|ratio|age|confidence|noise|jamming|"

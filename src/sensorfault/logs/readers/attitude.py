@@ -1,4 +1,4 @@
-"""Roll, pitch and yaw out of an autopilot's quaternion, which says the same but cannot be read."""
+"""Roll, pitch and yaw from the quaternion of an autopilot."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""ROS 1 bags (`.bag`), read from front to back: one without an index, because its recorder died, reads as well."""
+"""ROS 1 bags (`.bag`), read from front to back, so that a bag without an index can be read."""
 
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
@@ -24,7 +24,7 @@ def read_bag1(path: Path, ask: Ask) -> Tables:
     with TellingFile(path, ask.tell) as file:
         head = file.read(len(_MAGIC))
         if head != _MAGIC:
-            what = "an empty file" if not head else "no bag of ROS 1, version 2.0"
+            what = "an empty file" if not head else "not a bag of ROS 1, version 2.0"
             raise LogError(f"{path}: this is {what}; name a .bag file as rosbag wrote it.")
         recording = Recording(path, ask)
         _records(file, path.stat().st_size, recording, "")
@@ -58,7 +58,7 @@ def _records(file: BufferedIOBase, size: int, recording: Recording, within: str)
         except (_Broken, ReaderError, UnicodeDecodeError) as broken:
             if isinstance(broken, _Broken) and broken.header and broken.header.get("compression") == b"none":
                 _chunk("none", broken.data, recording, where)
-            recording.damage.append(Damage("the bag breaks off, or holds what is no record,", where))
+            recording.damage.append(Damage("the bag breaks off, or has an invalid record,", where))
             return
 
 

@@ -1,4 +1,4 @@
-"""ROS 2 bags of SQLite files (`.db3`): one file, or all that its metadata.yaml lies beside."""
+"""ROS 2 bags of SQLite files (`.db3`): one file, or all files with one metadata.yaml."""
 
 import re
 import sqlite3
@@ -49,7 +49,7 @@ def _part(path: Path, recording: Recording, ask: Ask) -> None:
     with path.open("rb") as file:
         head = file.read(len(_MAGIC))
     if head != _MAGIC:
-        what = "an empty file" if not head else "no database of a ROS 2 bag"
+        what = "an empty file" if not head else "not a database of a ROS 2 bag"
         raise LogError(f"{path}: this is {what}; name a .db3 file as ros2 bag wrote it.")
     count = 0
     try:
@@ -70,7 +70,7 @@ def _part(path: Path, recording: Recording, ask: Ask) -> None:
         raise
     except (sqlite3.Error, TypeError, ValueError, OverflowError) as error:
         recording.damage.append(
-            Damage(f"the database {path.name} can be read no further ({error}), it ends", f"message {count}")
+            Damage(f"the database {path.name} cannot be read further ({error}), it ends", f"message {count}")
         )
 
 

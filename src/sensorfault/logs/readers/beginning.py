@@ -1,4 +1,4 @@
-"""Which files are long, and what they begin with: enough to see what they hold."""
+"""Long files, and their first parts, which show what they hold."""
 
 from collections.abc import Callable
 from functools import reduce
@@ -37,8 +37,10 @@ def read_beginning(path: Path, tell: Callable[[float], None] = lambda share: Non
         parts.append(read_tables(path, Ask(tell=tell, part=take)))
         return reduce(joined, parts)
     except _Enough:
-        return with_notes(reduce(joined, parts), [f"{path.name}: it is long, so only its beginning was looked at."])
+        return with_notes(
+            reduce(joined, parts), [f"{path.name}: the file is long, so only its beginning was examined."]
+        )
 
 
 class _Enough(BaseException):
-    """Ends the reading of a file. No Exception: what those that read catch is damage."""
+    """Ends the reading of a file. Not an Exception, as readers catch those as damage."""

@@ -19,7 +19,7 @@ from sensorfault.logs.table import LogError
 
 
 def read_can(path: Path, ask: Ask) -> Tables:
-    """A table for each message that the databases describe, by its name. What cannot be decoded is counted and said.
+    """A table for each message that the databases describe, by its name; a note counts what cannot be decoded.
 
     Raises:
         LogError: no recording, no database beside it, or nothing in it that they describe.
@@ -46,7 +46,7 @@ def read_can(path: Path, ask: Ask) -> Tables:
 def _database(path: Path, beside: list[Path], cantools: Any) -> Any:
     """All of the databases as one."""
     if not beside:
-        raise LogError(f"{path}: no .dbc file lies beside it; put one there that says what its messages mean.")
+        raise LogError(f"{path}: there is no .dbc file beside it; put one there that describes its messages.")
     database = cantools.database.Database(strict=False)
     for file in beside:
         try:
@@ -83,7 +83,7 @@ def _opened(path: Path, tell: Callable[[float], None]) -> TextIOWrapper | Tellin
 
 
 class _Decoding:
-    """Frames -> rows, and a count of those that are none. `hand_on`: hears the tables when they are PART numbers."""
+    """Frames -> rows, and a count of bad frames. `hand_on`: is called with the tables when they reach PART numbers."""
 
     def __init__(self, path: Path, database: Any, handing: Handing, hand_on: Callable[[Tables], None]) -> None:
         self.path, self.database = path, database
@@ -113,7 +113,7 @@ class _Decoding:
             return []
         listed = ", ".join(f"0x{one:X}" for one in list(self._unknown)[:6])
         count = counted(sum(self._unknown.values()), "frame")
-        return [f"{self.path.name}: {count} of unknown messages left out, of {listed}."]
+        return [f"{self.path.name}: {count} of unknown messages left out: {listed}."]
 
     def damage(self) -> list[Damage]:
         if not self._spoilt:

@@ -15,14 +15,14 @@ TIME = "time"
 
 
 class Rows:
-    """Gathers the numbers of messages, eight bytes each. `numbers`: how many there are."""
+    """Collects the numbers of messages, eight bytes each. `numbers`: how many there are."""
 
     def __init__(self) -> None:
         self.numbers = 0
         self._of: dict[str, tuple[Any, list[str], array[float]]] = {}  # by name: its type, its signals, its rows
 
     def take(self, message: Any, time: float, signals: dict[str, Any]) -> None:
-        """One message, and what of its signals it bears: of a multiplexed one that is a part."""
+        """One message with its signals; a multiplexed message has only some of them."""
         if message.name not in self._of:
             self._of[message.name] = message, [signal.name for signal in message.signals], array("d")
         _, names, rows = self._of[message.name]
@@ -33,7 +33,7 @@ class Rows:
         self.numbers += 1 + len(names)
 
     def tables(self, path: Path, least: int) -> Tables:
-        """The tables of so many rows or more, without signals that no message bore."""
+        """The tables with at least this many rows, without signals that no message has."""
         tables = {name: _table(path, *one) for name, one in self._of.items()}
         return {name: one for name, one in tables.items() if len(one.frame) >= least and len(one.frame.columns) > 1}
 

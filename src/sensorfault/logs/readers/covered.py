@@ -1,4 +1,4 @@
-"""Which bytes of a file belong to messages, and which to none."""
+"""Which bytes of a file belong to messages, and which do not."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from sensorfault.logs.readers.source import Damage
 
 
 class Covered:
-    """`end`: where the last message ends. Hears of messages in the order of the file, in as many turns as one likes."""
+    """`end`: where the last message ends. Takes messages in the order of the file, in any number of calls."""
 
     def __init__(self) -> None:
         self.end = 0

@@ -1,4 +1,4 @@
-"""CSV and its kin: comma, semicolon, tab or blanks between the cells, with a header or without."""
+"""CSV and similar: comma, semicolon, tab or blanks between the cells, with a header or without."""
 
 import re
 from dataclasses import replace
@@ -23,7 +23,7 @@ _HOLDS: dict[pl.DataType, Holds] = {pl.String(): "text", pl.Int64(): "whole", pl
 
 
 def read_csv(path: Path) -> Source:
-    """One text table, with its times where they lie beside it. Columns of a headerless file are called c1, c2, ...
+    """One text table, with its times if they are in a file beside it. Columns without a header are called c1, c2, ...
 
     Raises:
         LogError: empty, not text, or not a table.
@@ -34,8 +34,7 @@ def read_csv(path: Path) -> Source:
 
 
 def rest_of_csv(path: Path, ask: Ask) -> Source:
-    """The last lines of a text table, once all before them have been handed on to `ask.part`; the whole if times lie
-    beside it.
+    """The last lines of a text table after all others went to `ask.part`; the whole table if its times are beside it.
 
     Raises:
         LogError: as `read_csv`.
@@ -66,7 +65,7 @@ def _table(
     try:
         return _parse(content, dialect, skip, holds or _holds(content, dialect, skip))
     except pl.exceptions.PolarsError:
-        # Some cell is not what the first rows promised: read all as text and keep what is not a number as it is.
+        # A cell is not of the type of the first rows: read all as text and keep text cells.
         return _numbers(_parse_text(path, content, dialect, skip))
 
 
@@ -135,7 +134,7 @@ def _parse_text(path: Path, content: Path | bytes, dialect: Dialect, skip: int) 
     try:
         return _parse(content, dialect, skip, ["text"] * len(dialect.names))
     except pl.exceptions.PolarsError:
-        raise LogError(f"{path}: {_odd_line(path, dialect)}; mend that line, or take it out.") from None
+        raise LogError(f"{path}: {_odd_line(path, dialect)}; correct that line, or remove it.") from None
 
 
 def _odd_line(path: Path, dialect: Dialect) -> str:

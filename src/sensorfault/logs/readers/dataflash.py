@@ -32,7 +32,7 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     """Every kind of message that has a time, on the autopilot's clock. `IMU[1]` is the second of several IMUs.
 
     Raises:
-        LogError: empty, not a DataFlash log, or hardly a message in it that can be read.
+        LogError: empty, not a DataFlash log, or too few messages that can be read.
     """
     with path.open("rb") as file:
         head = file.read(2)
@@ -57,13 +57,13 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     except BadDescription as bad:
         if not bad.at:
             raise LogError(f"{path}: the DataFlash log is damaged ({bad}); copy it from the autopilot again.") from None
-        damage.append(Damage(f"what messages there are is not to be understood ({bad}), behind", f"byte {bad.at}"))
+        damage.append(Damage(f"the descriptions of its messages are damaged ({bad}), after", f"byte {bad.at}"))
     if not handing.asked:
         tables = {name: one for name, one in tables.items() if len(one.frame) > 1}
     tables = handing.rest(tables)
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no messages with a time in this DataFlash log; name a log of a whole flight.")
-    notes = [f"{path.name}: messages described with contradictions left out: {', '.join(odd)}."] if odd else []
+    notes = [f"{path.name}: messages with contradictory descriptions left out: {', '.join(odd)}."] if odd else []
     return with_notes(tables, notes, [*covered.damage(), *(damage or _tail(path, covered.end))])
 
 
@@ -140,7 +140,7 @@ def _tail(path: Path, end: int) -> list[Damage]:
         tail = file.read(_PADDING)
     if len(tail) < _PADDING and not tail.startswith(HEAD):
         return []
-    return [Damage("the file ends in what is no whole message,", f"byte {end}")]
+    return [Damage("the file ends with an incomplete message,", f"byte {end}")]
 
 
 FORMAT = Format("ArduPilot DataFlash", ("*.bin",), remembering(read_dataflash), parts=True)

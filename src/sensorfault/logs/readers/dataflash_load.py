@@ -1,4 +1,4 @@
-"""A DataFlash file in pieces of whole messages, each indexed by pymavlink, which would index a file as a whole."""
+"""Reads a DataFlash file in pieces of whole messages, each indexed by pymavlink."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _UNSEEN = 3  # a message that begins in the last bytes is not looked for: its he
 
 
 class BadDescription(Exception):
-    """What kinds of messages there are is said in a way that nobody understands. `at`: a byte before it."""
+    """The descriptions of the messages are contradictory. `at`: a byte before that."""
 
     def __init__(self, at: int, reason: str) -> None:
         super().__init__(reason)
@@ -43,7 +43,7 @@ def pieces_of(path: Path) -> Iterator[Piece]:
     """All messages of a file, piece by piece.
 
     Raises:
-        BadDescription: at the piece whose messages cannot be told apart.
+        BadDescription: at the piece whose messages cannot be distinguished.
     """
     size, start = path.stat().st_size, 0
     described: dict[bytes, None] = {}  # messages that later pieces need as well, the newest last
@@ -104,7 +104,7 @@ class _Index(DFReader_binary):  # type: ignore[misc]
         super().init_arrays_fast(progress_callback)
 
     def init_clock(self) -> None:
-        """None: what time it was is for a vehicle file to say, and pymavlink may look through all for it."""
+        """No clock: the vehicle file gives the time, and pymavlink might search the whole file for it."""
 
     def _narrow(self) -> None:
         self.data_map.close()

@@ -40,13 +40,13 @@ def read_dataflash_text(path: Path, ask: Ask) -> Tables:
     tables = handing.rest(tables)
     if not tables and ask.tables is None:
         named = "no messages with a time in this DataFlash log"
-        what = named if messages.names else "this is no DataFlash log (no FMT line)"
+        what = named if messages.names else "this is not a DataFlash log (no FMT line)"
         raise LogError(f"{path}: {what}; name a .log file of a whole flight.")
     return with_notes(tables, (), messages.damage())
 
 
 class _Messages:
-    """Gathers lines. `names`: of the cells of each kind of message. `cells`: how many are gathered."""
+    """Collects lines. `names`: of the cells of each kind of message. `cells`: how many are collected."""
 
     def __init__(self, path: Path, ask: Ask) -> None:
         self.names: dict[str, list[str]] = {}
@@ -93,7 +93,7 @@ class _Messages:
         """What was no message."""
         damage = []
         if self._odd:
-            what = f"{self._odd} lines are no messages, the first"
+            what = f"{self._odd} lines are not messages, the first"
             damage.append(Damage(what, f"line {self._first_odd}", "the others were read"))
         if self._cut:
             damage.append(Damage("the file breaks off", f"line {self._last}"))

@@ -1,4 +1,4 @@
-"""What the readers of recorded messages have in common: decode, gather, and keep count of what cannot be."""
+"""What the readers of recorded messages share: decode, collect, and count what cannot be decoded."""
 
 from collections.abc import Hashable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""How a text table was written: its delimiter, its comments, its header, its first and its last whole row."""
+"""How a text table is written: delimiter, comments, header, first and last whole row."""
 
 import re
 from collections import Counter
@@ -11,7 +11,7 @@ _HEAD_BYTES = 1 << 16
 _COMMENT = b"#%"
 _DELIMITERS = (",", ";", "\t", "|")
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-MISSING = ("", "NA", "N/A", "NULL", "null", "None", "none", "-")  # cells that say that there is no value
+MISSING = ("", "NA", "N/A", "NULL", "null", "None", "none", "-")  # cells that mean no value
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def sniff(path: Path) -> Dialect:
     width = Counter(len(row) for row in cells.values()).most_common(1)[0][0]
     if width < 2:
         raise LogError(
-            f"{path}: a log needs a time column and one more, but its lines have one cell; look at its delimiter."
+            f"{path}: a log needs a time column and one more, but its lines have one cell; check its delimiter."
         )
     return _with_header(path, dialect, lines, table, cells, width)
 
@@ -107,7 +107,7 @@ def _with_header(
     names += [f"c{i + 1}" for i in range(len(names), width)]
     row = next((cells[i] for i in table if i >= start and len(cells[i]) == width), None)
     if row is None:
-        raise LogError(f"{path}: there is a header but no row below it; name a log with rows.")
+        raise LogError(f"{path}: there is a header, but no row below it; name a log with rows.")
     comma = dialect.delimiter != "," and any("," in cell and is_number(cell) for cell in row)
     return Dialect(dialect.delimiter, _unique(names), start, comma, dialect.comment, headerless, first_cut)
 

@@ -1,4 +1,4 @@
-"""One kind of log file, and ways to make its reader of a simpler function."""
+"""One kind of log file, and helpers to make its reader from a simpler function."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -49,7 +49,7 @@ def in_parts(read: Callable[[Path], Source], rest: Callable[[Path, Ask], Source]
 
 
 def remembering(read: Callable[[Path, Ask], Tables]) -> Callable[[Path, Ask], Tables]:
-    """The same reader, which remembers the last file: first one looks at what it holds, then one takes it."""
+    """The same reader with a cache of the last file, which is read twice: to guess its sensors, then for its values."""
 
     @lru_cache(maxsize=1)
     def remembered(path: Path, changed_ns: int, size: int, ask: Ask) -> Tables:

@@ -34,10 +34,10 @@ def format_of(path: Path) -> Format | None:
 
 
 def known_format(path: Path) -> Format:
-    """The same.
+    """The format of a file.
 
     Raises:
-        LogError: nothing reads a file of this name.
+        LogError: no format has files of this name.
     """
     form = format_of(path)
     if form is not None:
@@ -62,7 +62,7 @@ def take_table(path: Path, tables: Tables, table: str | None) -> Source:
     """One of the tables that were read from a file.
 
     Raises:
-        LogError: no such table, or several and none is named.
+        LogError: no such table, or several tables and no name.
     """
     if table is None and len(tables) == 1:
         return next(iter(tables.values()))
@@ -70,27 +70,27 @@ def take_table(path: Path, tables: Tables, table: str | None) -> Source:
         return tables[table]
     named = ", ".join(name for name in read_tables(path) if name)
     if not named:
-        raise LogError(f"{path}: this file is one table; take the key 'table' out of vehicle.toml.")
+        raise LogError(f"{path}: this file is one table; remove the key 'table' from vehicle.toml.")
     what = "it holds several tables" if table is None else f"there is no table '{table}' in it"
     raise LogError(f'{path}: {what}; write table = "..." with one of {named}.')
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def read_tables(path: Path, ask: Ask = ALL) -> Tables:
-    """The tables of a file that are asked for and there; of a format with one table a file it has no name.
+    """The requested tables of a file that are there; the only table of a file has no name.
 
     Raises:
         LogError: no such file, no reader for its name, the reader cannot read it, or it needs an extra.
     """
     if not path.exists():
-        raise LogError(f"{path}: there is no such file; look at the path.")
+        raise LogError(f"{path}: there is no such file; check the path.")
     try:
         form = known_format(path)
         part = ask.part
         asked = replace(ask, part=lambda tables: part(_finished(tables))) if part is not None else ask
         tables = read_unpacked(path, lambda file: form.read(file, asked)) if is_packed(path) else form.read(path, asked)
     except OSError as error:
-        raise LogError(f"{path}: cannot be read ({error.strerror or error}); look at the file's rights.") from None
+        raise LogError(f"{path}: cannot be read ({error.strerror or error}); check the file's permissions.") from None
     except ImportError as error:  # the other files of a folder can be read all the same
         sentence = sentence_of_missing(error, f"{path}: reading it")
         if sentence is None:
@@ -100,5 +100,5 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
 
 
 def _finished(tables: Tables) -> Tables:
-    """Each table with its name, and with what its columns say in another way."""
+    """Each table with its name, and with the angles of its quaternion."""
     return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}

@@ -1,4 +1,4 @@
-"""Files packed by gzip: unpacked beside nothing of the user's, read as what they are, called by their own name."""
+"""Files packed by gzip: unpacked to a temporary folder and read as their own format."""
 
 import tempfile
 import zlib
@@ -47,7 +47,7 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
         with file.open("wb") as plain:
             whole = _unpack(path, plain)
             if not plain.tell():
-                raise LogError(f"{path}: nothing in this file can be unpacked; pack the log again with gzip.")
+                raise LogError(f"{path}: this file cannot be unpacked; pack the log again with gzip.")
             if not whole:
                 damage.append(Damage("the packed file is damaged or breaks off", f"unpacked byte {plain.tell()}"))
         try:

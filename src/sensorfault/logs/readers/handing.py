@@ -1,4 +1,4 @@
-"""Handing on a long file part by part."""
+"""Passing on a long file part by part."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ from sensorfault.logs.readers.source import Ask, Tables
 
 
 class Handing:
-    """Hands on parts to who asked for them. `begun`: whether there has been one."""
+    """Passes on parts to the caller. `begun`: whether there has been one."""
 
     def __init__(self, ask: Ask) -> None:
         self._part = ask.part
@@ -29,5 +29,5 @@ class Handing:
         self._part(tables)
 
     def rest(self, tables: Tables) -> Tables:
-        """The tables of the last part, and no row of those before: what is said of the file needs a place to stand."""
+        """The tables of the last part; those of earlier parts without rows, to carry the file's notes."""
         return self._empty | tables

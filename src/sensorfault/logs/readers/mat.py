@@ -1,4 +1,4 @@
-"""MATLAB `.mat` files: a structure of vectors of one length is a table, and so are the vectors beside it."""
+"""MATLAB `.mat` files: a structure of vectors of one length is a table, and so are the vectors outside structures."""
 
 import struct
 from collections import Counter
@@ -38,7 +38,7 @@ def read_mat(path: Path, ask: Ask) -> Tables:
     if not whole:
         lost = f" ({damage[0].what} at {damage[0].where})" if damage else ""
         raise LogError(
-            f"{path}: no vectors of numbers of one length{lost}; save a structure of them, with one for the time."
+            f"{path}: no vectors of numbers of one length{lost}; save a structure of vectors, one of them the time."
         )
     return with_notes(whole, (), damage)
 

@@ -11,7 +11,7 @@ _NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("",
 
 
 def load(path: str) -> Loaded:
-    """The same of version 7.3 as `mat_load.load` finds in those before it. `told`: "lost", why vectors cannot be read.
+    """As `mat_load.load`, for version 7.3. In the second result, "lost": why vectors cannot be read.
 
     Raises:
         Exception: of any kind, if the file is damaged.
@@ -33,7 +33,7 @@ def load(path: str) -> Loaded:
 
 
 def _members(group: Any, path: str, lost: list[list[str]]) -> Iterator[tuple[str, Any]]:
-    """What MATLAB has put there by name; its own books have a # in theirs, and a link may lead to another file."""
+    """The variables by name, without MATLAB's internal ones (# in the name) and links to other files."""
     import h5py
 
     for name in group:

@@ -1,4 +1,4 @@
-"""MAVLink telemetry as a ground station writes it (`.tlog`): a time and a packet, again and again; by pymavlink."""
+"""MAVLink telemetry of a ground station (`.tlog`): pairs of a time and a packet; by pymavlink."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -78,7 +78,7 @@ class _Telemetry:
         if name.startswith("UNKNOWN"):
             if not _follows(file):
                 return False
-            self.topics.cannot(topic, "no MAVLink type known here")
+            self.topics.cannot(topic, "unknown MAVLink type")
         elif self.ask.wants(topic):
             received_us = int.from_bytes(packet[:_TIME_BYTES], "big")
             self.topics.take(topic, name, received_us * 1000, message.to_dict())
@@ -90,7 +90,7 @@ class _Telemetry:
             return [Damage("the file breaks off inside the packet", f"byte {self._ends}")]
         if not self._lost:
             return []
-        what = f"{self._lost} bytes belong to no whole packet, the first"
+        what = f"{self._lost} bytes are not in a whole packet, the first"
         return [Damage(what, f"byte {self._first_lost}", "the others were read")]
 
 

@@ -1,4 +1,4 @@
-"""MCAP recordings (`.mcap`), read from front to back: one that was not closed reads as well."""
+"""MCAP recordings (`.mcap`), read from front to back, so that one that was not closed can be read."""
 
 import json
 from pathlib import Path
@@ -36,7 +36,7 @@ def _records(file: TellingFile, path: Path, recording: Recording) -> None:
     from mcap.records import Channel, Message, Schema
 
     def breaks_off(where: str) -> None:
-        recording.damage.append(Damage("the recording breaks off, or holds what is no record,", where))
+        recording.damage.append(Damage("the recording breaks off, or has an invalid record,", where))
 
     schemas: dict[int, Any] = {}
     for record, start in records(file, path.stat().st_size, breaks_off, recording.cannot_unpack):

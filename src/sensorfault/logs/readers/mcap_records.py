@@ -1,4 +1,4 @@
-"""The records of an MCAP from front to back, past what is damaged."""
+"""The records of an MCAP from front to back, without damaged ones."""
 
 import struct
 from collections.abc import Callable, Iterator
@@ -21,8 +21,8 @@ def records(file: TellingFile, size: int, breaks_off: _Where, cannot_unpack: _Wh
     Args:
         file: behind the magic.
         size: of the file [bytes].
-        breaks_off: hears where that is, `byte 4711`.
-        cannot_unpack: hears where each chunk is whose compression or checksum is wrong, which is passed over.
+        breaks_off: is called with the place where the file breaks off, `byte 4711`.
+        cannot_unpack: is called with the place of each chunk with a wrong compression or checksum; it is skipped.
     """
     from mcap.exceptions import McapError
     from mcap.records import Chunk, DataEnd

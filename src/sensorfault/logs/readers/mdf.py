@@ -38,7 +38,7 @@ def read_mdf(path: Path, ask: Ask) -> Tables:
         try:
             loaded = load_apart("mdf_load", path, part)
         except ValueError as error:
-            damage.append(Damage(f"the file can be read no further ({error})", f"part {part + 1} of {parts}"))
+            damage.append(Damage(f"the file cannot be read further ({error})", f"part {part + 1} of {parts}"))
             loaded = _NOTHING
             break
         damage += _lost(loaded)

@@ -18,8 +18,8 @@ TIME = "time"
 def load(path: str, part: int | None = None) -> Loaded:
     """The groups with two rows or more and numbers in them, on Unix time.
 
-    `told`: "units" of each group, "others": how many channels are no numbers, "lost": why groups cannot be read,
-    "parts": in how many stretches of time the file is of about PART numbers each. `part`: which of them, or all.
+    In the second result: "units" of each group, "others": how many channels are not numbers, "lost": why groups cannot
+    be read, "parts": the number of time intervals with about PART numbers each. `part`: one of them, or all.
 
     Raises:
         Exception: of any kind, if the file is damaged.
@@ -62,7 +62,7 @@ class _File:
         self._taken: dict[int, tuple[int, int]] = {}  # the last part of each group, and how many rows are taken
 
     def cut(self) -> list[list[str]]:
-        """Find out where parts end; the groups of which a part cannot be told, and why, which are left out."""
+        """Find the ends of the parts; returns the groups that have none, which are left out, and why."""
         if len(self._bounds):
             return []
         ends, lost, numbers = [], [], 0

@@ -32,11 +32,11 @@ def read_npy(path: Path) -> Source:
         path = called_by(path)
     elif not _TIMES.search(path.stem):
         name = name_of(path)
-        raise LogError(f"{path}: no times lie beside these values; save them as {name}__t.npy, in seconds.")
+        raise LogError(f"{path}: there are no times beside these values; save them as {name}__t.npy, in seconds.")
     values = _values_of(path)
     if not values:
         name = name_of(path)
-        raise LogError(f"{path}: no values lie beside these times; save them as {name}__value.npy.")
+        raise LogError(f"{path}: there are no values beside these times; save them as {name}__value.npy.")
     time = _array(path)
     if time.ndim != 1:
         raise LogError(f"{path}: times of shape {time.shape}; save one time a row, in seconds.")
@@ -44,7 +44,7 @@ def read_npy(path: Path) -> Source:
     for file in values:
         value = _array(file)
         if value.ndim not in (1, 2):
-            raise LogError(f"{file}: an array of {value.ndim} axes is no table; save rows, or rows and columns.")
+            raise LogError(f"{file}: an array of {value.ndim} axes is not a table; save rows, or rows and columns.")
         if len(value) != len(time):
             raise LogError(f"{file}: {len(value)} rows, but {path.name} has {len(time)}; save one row for each time.")
         width = None if value.ndim == 1 else value.shape[1]
@@ -101,7 +101,7 @@ def _array(path: Path) -> np.ndarray:
         reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
         raise LogError(f"{path}: not a whole array of numbers ({reason}); save it again with numpy.save.") from None
     if array.dtype.kind not in _NUMBERS or not array.ndim or not array.size:
-        raise LogError(f"{path}: no table of numbers; save one with numpy.save: rows, or rows and columns.")
+        raise LogError(f"{path}: not a table of numbers; save one with numpy.save: rows, or rows and columns.")
     return array
 
 

@@ -8,7 +8,7 @@ from sensorfault.logs.readers.ros_types import Decoder
 
 @lru_cache(maxsize=256)
 def protobuf_decoder(kind: str, described: bytes) -> Decoder | None:
-    """What decodes messages of a type; None if the description does not tell.
+    """The decoder of a message type; None if the description does not have the type.
 
     Args:
         kind: `foxglove.LocationFix`.

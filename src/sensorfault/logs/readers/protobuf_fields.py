@@ -11,10 +11,9 @@ Take = Callable[[Any, MutableSequence[float]], None]  # appends numbers of a mes
 
 
 class ProtobufFields:
-    """The same as `Fields` for protocol buffers, whose descriptions tell the numbers, and the first message how many.
+    """As `Fields`, for protocol buffers: the description gives the numbers, the first message the lengths of lists.
 
-    A message that is not there has no numbers: they are NaN, like one that a message may lack. Of a list of messages
-    each is a part of its own, `joints[0].position`.
+    Numbers of a missing message are NaN. The messages of a list are named `joints[0].position`.
     """
 
     def __init__(self, first: Any) -> None:
@@ -39,7 +38,7 @@ class ProtobufFields:
         return _all(takes)
 
     def _one(self, field: Any, first: Any, path: str, above: tuple[str, ...]) -> Take:
-        """A number that may lack, or a message."""
+        """An optional number, or a message."""
         before = len(self.names)
         if field.message_type is None:
             self.names.append(path)

@@ -1,4 +1,4 @@
-"""Libraries that print what they think of a file."""
+"""Silences libraries that print remarks on a file."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -11,9 +11,9 @@ Aloud = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 @contextmanager
 def quiet() -> Iterator[Aloud]:
-    """What a library remarks, in Python and below, goes nowhere: what is wrong is told in one sentence.
+    """Hide what a library prints, in Python and in C; the reader reports errors itself.
 
-    Yields what lets a function be heard that the library calls: progress, and who takes the parts of a file.
+    Yields a wrapper for functions that the library calls and that may print: progress, and the taker of parts.
     """
     with ExitStack() as hushed:
         hushed.enter_context(_hushed())

@@ -38,7 +38,7 @@ def si_unit_of(kind: str, field: str) -> str:
 
 @lru_cache(maxsize=256)
 def decoder(kind: str, definition: str, ros: int, idl: bool = False) -> Decoder | None:
-    """What decodes messages of a type; None if nobody knows the type.
+    """The decoder of a message type; None if the type is unknown.
 
     Args:
         kind: `sensor_msgs/msg/Imu`, or `sensor_msgs/Imu` as ROS 1 says.

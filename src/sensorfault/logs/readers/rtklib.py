@@ -36,7 +36,7 @@ def read_pos(path: Path) -> Source:
             f"{path}: no header line like '% GPST latitude(deg) ...'; let RTKLIB write one (out-outhead=on)."
         )
     if not rows:
-        raise LogError(f"{path}: there is a header but no solution below it; name a log with rows.")
+        raise LogError(f"{path}: there is a header, but no solution below it; name a log with rows.")
     clock, *names = header.decode("ascii", "replace").lstrip("%").split()
     first_line = next(i for i, line in enumerate(lines) if line.strip() and line.lstrip()[:1] not in b"%#") + 1
     columns = ["date", "clock", *names]
@@ -89,10 +89,10 @@ def read_tag(path: Path, stream: Path, counter_s: np.ndarray, line: np.ndarray) 
         LogError: not a tag file, or one of another stream.
     """
     if not path.is_file():
-        raise LogError(f"{path}: there is no time tag; put it beside {stream.name}, or take the key 'tag' out.")
+        raise LogError(f"{path}: there is no time tag; put it beside {stream.name}, or remove the key 'tag'.")
     raw = path.read_bytes()
     if raw[:14] != b"TIMETAG RTKLIB" or len(raw) < 76 + 8 * 2:
-        raise LogError(f"{path}: this is not a time tag of RTKLIB; take the key 'tag' out of vehicle.toml.")
+        raise LogError(f"{path}: this is not a time tag of RTKLIB; remove the key 'tag' from vehicle.toml.")
     second, fraction = struct.unpack("<Id", raw[64:76])
     pair = np.frombuffer(raw, "<u4", offset=76, count=(len(raw) - 76) // 8 * 2).reshape(-1, 2)
     pair = pair[np.diff(pair[:, 1], prepend=0) > 0]  # a tag that brought nothing says nothing of when

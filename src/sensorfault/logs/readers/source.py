@@ -1,4 +1,4 @@
-"""What a reader of one format hands on: the file's columns as they stand in it."""
+"""What a reader returns: the columns of a file, unchanged."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -25,10 +25,10 @@ class Damage:
 
 @dataclass(frozen=True)
 class Ask:
-    """What a reader is asked. `tables`: those that are needed, None for all. `tell`: hears the share read, 0 to 1.
+    """A request to a reader. `tables`: those that are needed, None for all. `tell`: called with the share read, 0 to 1.
 
-    `part`: takes what has been read of a long file whenever that is PART numbers; the reader then returns the rest.
-    Formats that can say so: `Format.parts`.
+    `part`: is called with each part of a long file (PART numbers); the reader then returns the rest. Only for formats
+    with `Format.parts`.
     """
 
     tables: frozenset[str] | None = None
@@ -36,7 +36,7 @@ class Ask:
     part: "Callable[[Tables], None] | None" = None
 
     def wants(self, table: str) -> bool:
-        """Whether a table need be read."""
+        """Whether a table is needed."""
         return self.tables is None or table in self.tables
 
 
@@ -48,14 +48,14 @@ PART = 1 << 21  # numbers: 16 MB of them
 class Source:
     """One file's columns, untouched: numbers where every cell is a number, text elsewhere.
 
-    `table`: which one of its file's, where that holds several.
+    `table`: its name, where the file holds several.
     `time` and `unit`: the time column and its unit where the format fixes them (RTKLIB does, CSV does not).
     `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
-    `times`: the file that its time column stands in, where that is another.
+    `times`: the file of its time column, where that is another file.
     `before`: rows of the table in parts of the file that were read before this one; `begin_s`: its first reading there.
-    `notes` and `damage` are the whole file's: each table of a file that holds several has them all.
+    `notes` and `damage` are those of the whole file, the same for each of its tables.
     """
 
     path: Path
@@ -74,11 +74,11 @@ class Source:
 
     @property
     def name(self) -> str:
-        """What a sentence calls it: its file, and its table where that holds several."""
+        """Its name in messages: its file, and its table where the file holds several."""
         return f"{self.path.name} ({self.table})" if self.table else self.path.name
 
     def place(self, row: int) -> str:
-        """Where a row stands in the file, for a person."""
+        """The place of a row in the file, for messages."""
         return f"line {row + self.first_line}" if self.first_line else f"row {row + self.before + 1}"
 
     def any_column(self, name: str) -> pl.Series:
@@ -96,7 +96,7 @@ class Source:
         """One column as numbers: float64, or int64 where a float could not hold it (nanoseconds since 1970).
 
         Raises:
-            LogError: no such column, or a cell that is no number.
+            LogError: no such column, or a cell that is not a number.
         """
         column = self.any_column(name)
         if column.dtype == pl.Int64 or column.dtype == pl.Float64:
@@ -109,7 +109,7 @@ class Source:
             row = int(bad[0])
             raise LogError(
                 f"{self.path}: {self.place(row)}, column '{name}' holds '{column[row]}', which is not a number; "
-                "mend the cell, or leave the column out of vehicle.toml."
+                "correct the cell, or leave the column out of vehicle.toml."
             )
         return number
 
@@ -118,7 +118,7 @@ Tables = dict[str, Source]  # the tables of one file by name; a format with one 
 
 
 def with_notes(tables: Tables, notes: Iterable[str], damage: Iterable[Damage] = ()) -> Tables:
-    """The same tables, and what their file's reader has to say of it."""
+    """The same tables with these notes and this damage."""
     said, broken = tuple(notes), tuple(damage)
     return {
         name: replace(one, notes=(*one.notes, *said), damage=(*one.damage, *broken)) for name, one in tables.items()

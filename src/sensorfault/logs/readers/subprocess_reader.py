@@ -1,7 +1,7 @@
-"""Libraries that damage can make end the interpreter, or fill the memory: they read in a process of their own.
+"""Runs libraries in a process of their own, as a damaged file can make them crash or fill the memory.
 
-That lives on for the next file, is told on each line of its input, as JSON, where to put what it found and a file, and
-answers with a line: nothing, or why the file cannot be read.
+The process stays for the next file. Each line of its input is JSON with a file and the place for the result; it answers
+with one line: empty, or why the file cannot be read.
 """
 
 import atexit
@@ -23,7 +23,7 @@ _running: dict[str, subprocess.Popen[str]] = {}
 
 @dataclass(frozen=True)
 class Loaded:
-    """Vectors by table and name, and what else there is to tell of them, as JSON can say it."""
+    """Vectors by table and name, and more about them that fits JSON."""
 
     vectors: dict[str, dict[str, np.ndarray]]
     result: dict[str, Any] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class Loaded:
 
 
 def load_apart(loader: str, path: Path, *more: Any) -> Loaded:
-    """What the `load` of the module of this name finds in a file; `more`: what it is told beside the file, as JSON can.
+    """The result of `load` of the module of this name for a file; `more`: further arguments that fit JSON.
 
     Raises:
         ValueError: why it cannot be read.

@@ -1,4 +1,4 @@
-"""The process that `apart` speaks with: `python -m sensorfault.logs.readers.subprocess_serve mat_load`."""
+"""The process that subprocess_reader starts: `python -m sensorfault.logs.readers.subprocess_serve mat_load`."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""A file that tells how far it has been read, and where a read came up short."""
+"""A file that reports how far it has been read, and where a read returned too few bytes."""
 
 import io
 from collections.abc import Callable
@@ -9,7 +9,7 @@ _BUFFER_BYTES = 1 << 20
 
 
 class _Raw(io.FileIO):
-    """Tells once for each buffer, so that many small reads cost nothing."""
+    """Reports once per buffer, so that many small reads cost nothing."""
 
     def __init__(self, path: Path, tell: Callable[[float], None]) -> None:
         super().__init__(path, "r")
@@ -23,7 +23,7 @@ class _Raw(io.FileIO):
 
 
 def open_telling(path: Path, tell: Callable[[float], None]) -> io.BufferedReader:
-    """A file that tells how far it has been read, at no cost for each of many small reads."""
+    """A file that reports how far it has been read, at no cost for small reads."""
     return io.BufferedReader(_Raw(path, tell), _BUFFER_BYTES)
 
 

@@ -48,11 +48,11 @@ def with_times(source: Source) -> Source:
     if not is_number(cells[0]):
         cells = cells[1:]  # below its header
     if len(cells) - rows not in (0, 1):
-        said = f"{source.path.name}: {file.name} has {len(cells)} times for {rows} rows, so they are not its times."
+        said = f"{source.path.name}: {file.name} has {len(cells)} times for {rows} rows, so its times were not used."
         return replace(source, notes=(*source.notes, said))
     time = cells.cast(pl.Float64, strict=False)
     if time.null_count():
-        raise LogError(f"{file}: '{cells.filter(time.is_null())[0]}' is no time; write one number a line.")
+        raise LogError(f"{file}: '{cells.filter(time.is_null())[0]}' is not a time; write one number per line.")
     return replace(source, frame=source.frame.select(time[:rows].alias(TIME), pl.all()), times=file)
 
 

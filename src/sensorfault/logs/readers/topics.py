@@ -25,9 +25,9 @@ _LATEST_NS = 2**63 - 1  # what a column of whole numbers holds
 
 
 class Topics:
-    """Gathers messages. What is kept of a message is eight bytes a number, so that pictures cost nothing.
+    """Collects the numbers of messages, eight bytes each; pictures and scans are left out.
 
-    `unit_of(type, field)`: the unit that the format's documents name, or nothing.
+    `unit_of(type, field)`: the unit in the format's documentation, or nothing.
     """
 
     def __init__(self, path: Path, ask: Ask, unit_of: Callable[[str, str], str] = si_unit_of) -> None:
@@ -55,7 +55,7 @@ class Topics:
             self._numbers = 0
 
     def cannot(self, topic: str, why: str) -> None:
-        """A topic whose messages nobody can decode."""
+        """A topic whose messages cannot be decoded."""
         self._unknown.setdefault(topic, why)
 
     def tables(self) -> tuple[Tables, list[str]]:
@@ -74,7 +74,7 @@ class Topics:
         for what, listed in (
             ("topics of unknown type", unknown),
             ("topics without numbers", bare),
-            ("fields that are no measurements", cut),
+            ("fields that are not measurements", cut),
         ):
             if listed:
                 notes.append(f"{self.path.name}: {what} left out: {', '.join(listed)}.")
@@ -142,15 +142,15 @@ def _member(part: Any, name: str) -> Any:
 
 
 def _believed(path: Path, topic: str, received: np.ndarray, stamp: np.ndarray) -> tuple[bool, list[str]]:
-    """Whether the stamps, which tell when was measured, can be believed; else the time of reception counts."""
+    """Whether the stamps (times of measurement) can be trusted; else the time of reception is used."""
     if not stamp.any():
         return False, []
     if len(stamp) > 1 and np.mean(np.diff(stamp) > 0) < _RISING:
-        return False, [f"{path.name}: the stamps of {topic} do not rise; the time of reception counts instead."]
+        return False, [f"{path.name}: the stamps of {topic} do not increase; the time of reception is used instead."]
     apart_s = float(np.median((stamp - received) / _NS))
     if abs(apart_s) > _APART_S:
         return False, [
-            f"{path.name}: the stamps of {topic} are of another clock, {apart_s:.6g} s off the recording's; "
-            "the time of reception counts instead."
+            f"{path.name}: the stamps of {topic} are from another clock, {apart_s:.6g} s off the recording's; "
+            "the time of reception is used instead."
         ]
     return True, []

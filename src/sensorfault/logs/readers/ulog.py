@@ -30,7 +30,7 @@ def read_ulog(path: Path, ask: Ask) -> Tables:
     with path.open("rb") as file:
         head = file.read(len(_MAGIC))
     if head != _MAGIC:
-        what = "an empty file" if not head else "no ULog (it does not begin with 'ULog')"
+        what = "an empty file" if not head else "not a ULog (it does not begin with 'ULog')"
         raise LogError(f"{path}: this is {what}; name a .ulg file as PX4 wrote it.")
     handing = Handing(ask)
     log = _load(path, ask, handing)
@@ -76,10 +76,10 @@ def _first_line(error: Exception) -> str:
 
 
 def _dropouts(path: Path, log: "Loaded") -> list[str]:
-    """What the autopilot itself says that it could not write down."""
+    """The autopilot's own report of data that it could not write."""
     if not log.lost:
         return []
-    return [f"{path.name}: the autopilot could not write {times(log.lost)}, {log.lost_s:.3g} s in all."]
+    return [f"{path.name}: the autopilot lost data {times(log.lost)}, {log.lost_s:.3g} s in all."]
 
 
 def _tables(path: Path, ask: Ask, topics: list[Any]) -> Tables:

@@ -1,4 +1,4 @@
-"""pyulog, made to say where a file is broken, and to hand on what it has read before it has read all."""
+"""pyulog with the place of damage, and with parts of a file while it is read."""
 
 import struct
 from collections.abc import Callable
@@ -12,10 +12,10 @@ from sensorfault.logs.readers.telling import open_telling
 
 
 class Loaded(ULog):  # type: ignore[misc]
-    """What pyulog reads of a file. `take`: hears the topics read so far whenever they are PART numbers.
+    """What pyulog reads of a file. `take`: is called with the topics so far whenever they reach PART numbers.
 
-    `data_list`: the topics, or what has come of them since `take` heard. `broken_at`: how far into the file its first
-    broken message was noticed. `left`: bytes of a header that the file ended in; None if it ended behind a header.
+    `data_list`: the topics, without what went to `take`. `broken_at`: position in the file where its first broken
+    message was noticed. `left`: bytes of a header at which the file ended; None if it ended after a header.
     `lost_s`: how often, and for how long together [s], the autopilot could not write.
     """
 

@@ -1,4 +1,4 @@
-"""UTIAS MRCLAM measurements: ranges and bearings to others, several at one time; each other becomes columns of its own.
+"""UTIAS MRCLAM measurements: ranges and bearings to robots and landmarks, each in columns of its own.
 
 Source: K. Y. K. Leung et al., The UTIAS multi-robot cooperative localization and mapping dataset, IJRR 30(8), 2011.
 """
@@ -25,9 +25,7 @@ def read_utias(path: Path) -> Source:
     """
     plain = read_csv(path)
     if plain.frame.width != _WIDTH:
-        raise LogError(
-            f"{path}: {plain.frame.width} columns where time, barcode, range and bearing should be; mend it."
-        )
+        raise LogError(f"{path}: {plain.frame.width} columns instead of time, barcode, range and bearing; correct it.")
     time, code, distance, bearing = (plain.column(name).cast(pl.Float64).to_numpy() for name in plain.frame.columns)
     known = np.isfinite(time) & np.isfinite(code)
     if not known.any():
@@ -44,9 +42,7 @@ def read_utias(path: Path) -> Source:
             ChannelEntry("range", names[0], "m", watch=False),
             ChannelEntry("bearing", names[1], "rad", watch=False),
         )
-        sensors.append(
-            SensorEntry(f"barcode_{one:.0f}", channels, why="another robot or a landmark, seen now and then")
-        )
+        sensors.append(SensorEntry(f"barcode_{one:.0f}", channels, why="another robot or a landmark, seen at times"))
     return Source(path, pl.DataFrame(columns), "time", "s", 0, plain.notes, plain.damage, tuple(sensors))
 
 

@@ -111,7 +111,7 @@ _D2 = _Message(
 
 
 class BeidouSubframes:
-    """Gathers what one satellite sends until an ephemeris is whole. `paged`: whether that is D2."""
+    """Collects the subframes of one satellite until an ephemeris is complete. `paged`: whether it sends D2."""
 
     def __init__(self, paged: bool) -> None:
         self.paged, self.message = paged, _D2 if paged else _D1
@@ -158,5 +158,5 @@ class BeidouSubframes:
 
 
 def tilt(satellite: str) -> float:
-    """Of the equator that a satellite's orbit is told by, of any system [rad]."""
+    """Tilt of the equator that a satellite's orbit refers to, of any system [rad]."""
     return _TILT if satellite in _GEOSTATIONARY else 0.0

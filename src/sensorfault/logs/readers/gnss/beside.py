@@ -11,12 +11,12 @@ from sensorfault.logs.table import LogError
 
 _REACH_S = 7_200.0
 NONE = (
-    "no navigation file (RINEX type N) of its day lies beside it; satellites' places and corrected ranges are left out."
+    "no navigation file (RINEX type N) of its day is beside it; satellite positions and corrected ranges are left out."
 )
 
 
 def broadcast_beside(path: Path, time: float) -> tuple[Broadcast | None, list[str]]:
-    """What the navigation files in the same folder tell of a time [s of GPS time], and sentences on them."""
+    """The ephemerides in the same folder for a time [s of GPS time], and notes on the files."""
     found, used, notes = Broadcast(), [], []
     for file in sorted(path.parent.iterdir()):
         if file == path or not file.is_file() or not _is_nav(file):
@@ -24,7 +24,7 @@ def broadcast_beside(path: Path, time: float) -> tuple[Broadcast | None, list[st
         try:
             result = read_nav(file)
         except LogError as error:
-            notes.append(f"{path.name}: a navigation file beside it is of no use: {error}")
+            notes.append(f"{path.name}: a navigation file beside it cannot be used: {error}")
             continue
         if np.abs(result.times - time).min() < _REACH_S:
             found = found.with_more(result)
@@ -32,11 +32,13 @@ def broadcast_beside(path: Path, time: float) -> tuple[Broadcast | None, list[st
             notes += [one.sentence(file) for one in result.damage]
     if not used:
         return None, [*notes, f"{path.name}: {NONE}"]
-    notes.append(f"{path.name}: the satellites' places are from {' and '.join(used)}.")
+    notes.append(f"{path.name}: the satellite positions are from {' and '.join(used)}.")
     if found.odd:
         notes.append(f"{path.name}: ephemerides that contradict the others were left out, of {', '.join(found.odd)}.")
     if found.klobuchar is None:
-        notes.append(f"{path.name}: no coefficients for the ionosphere in them; its delay is left in the ranges.")
+        notes.append(
+            f"{path.name}: there are no coefficients for the ionosphere in them; its delay stays in the ranges."
+        )
     return found, notes
 
 

@@ -1,4 +1,4 @@
-"""What satellites broadcast about themselves, gathered: where each was at any time, and what its clock showed."""
+"""Broadcast ephemerides: the position and the clock of each satellite at any time."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""The messages in a stream of u-blox's: where one is damaged the search goes on at its next byte."""
+"""The messages in a u-blox stream; after a damaged one the search continues at its next byte."""
 
 import mmap
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ def frames(path: Path, lost: list[Damage], tell: Callable[[float], None]) -> Ite
     Args:
         path: of the stream; what is not u-blox's in it (NMEA, RTCM) is passed over.
         lost: where damage is added to.
-        tell: hears the share that has been read.
+        tell: is called with the share that has been read.
     """
     if not path.stat().st_size:
         return

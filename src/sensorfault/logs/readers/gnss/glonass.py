@@ -31,7 +31,7 @@ _OFFSET = _field(4, 80, 59, -30)  # τn
 
 
 class GlonassStrings:
-    """Gathers what one satellite sends until a state is whole."""
+    """Collects the strings of one satellite until a state is complete."""
 
     def __init__(self) -> None:
         self.parts: dict[int, int] = {}

@@ -1,4 +1,4 @@
-"""Of files that are one log with observations, the one that stands for them."""
+"""The file that stands for an observation file and the orbits beside it."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from sensorfault.logs.readers.gnss.rinex import looks_rinex
 
 
 def observations_beside(path: Path) -> Path:
-    """The first RINEX observation file in the folder of a file that tells where satellites are; else itself."""
+    """The first RINEX observation file in the folder of a file of orbits; the file itself if there is none."""
     for file in sorted(path.parent.iterdir()):
         if file != path and file.is_file():
             with file.open("rb") as opened:

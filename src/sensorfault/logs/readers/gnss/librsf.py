@@ -1,4 +1,4 @@
-"""libRSF's text files, as smartLoc and others come in: one measurement a line, its first word says of what.
+"""Text files of libRSF, as of smartLoc: one measurement per line; the first word is its kind.
 
 Source: smartLoc's readme (TU Chemnitz, 2022). Its pseudoranges are corrected for the satellites' clocks and the air,
 not for the earth's turn.
@@ -99,7 +99,7 @@ def _ranges(path: Path, rows: list[list[float]]) -> Source:
 
 
 def _name(satellite: int, system: int) -> str:
-    """`R20` is told as 320 of system 4, or as 352, NMEA's way of counting GLONASS from 33."""
+    """`R20` is written as 320 of system 4, or as 352, as NMEA counts GLONASS from 33."""
     letter, number = _SYSTEMS.get(system, "X"), satellite % 100
     return f"{letter}{number - 32 if letter == 'R' and number > 32 else number:02}"
 

@@ -60,12 +60,12 @@ def read_nmea(path: Path, ask: Ask) -> Tables:
         damage.append(Damage(what, f"line {spoilt[0]}", "all the others were read"))
     times = [moment for moment in rows if not dated or moment > _DAY_S]
     table = {name: np.array([rows[moment].get(name, np.nan) for moment in times]) for name in _NAMES}
-    notes = () if dated else (f"{path.name}: no sentence RMC tells the date; the time counts from midnight.",)
+    notes = () if dated else (f"{path.name}: there is no RMC sentence with a date; the time counts from midnight.",)
     return with_notes({"": gnss_table(path, {"time": np.array(times), **table})}, notes, damage)
 
 
 def _values(message: Any) -> dict[str, float]:
-    """What a sentence tells, if the receiver had a fix; empty fields tell nothing."""
+    """The values of a sentence, if the receiver had a fix; empty fields have none."""
     if message.msgID == "RMC":
         if message.status != "A":
             return {}

@@ -29,15 +29,15 @@ UNITS = {  # the columns of one satellite, `G07.pseudorange_m`, in this order
     "clock_s": "s",
     "nlos": "",
 }
-WHY = "one satellite as it was received; its values are for what knows where it was"
+WHY = "one satellite; its values are judged only by methods that know its position"
 
 
 @dataclass(frozen=True)
 class Observed:
     """T epochs of S satellites, NaN where nothing was received.
 
-    `time`: of reception by the receiver's clock [s of GPS time]. `value`: by name as in UNITS. `frequency`: that was
-    heard of a system (`C`), where it is not its first [Hz].
+    `time`: of reception by the receiver's clock [s of GPS time]. `value`: by name as in UNITS. `frequency`:
+    received of a system (`C`), where it is not its first [Hz].
     """
 
     time: Float[np.ndarray, " T"]

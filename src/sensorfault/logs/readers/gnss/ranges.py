@@ -1,4 +1,4 @@
-"""Pseudoranges corrected by what is known of satellites and air, and the satellites' places beside them."""
+"""Pseudoranges corrected for satellite clock and atmosphere, and the positions of the satellites."""
 
 from dataclasses import replace
 

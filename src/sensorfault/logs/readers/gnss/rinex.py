@@ -60,7 +60,7 @@ def read_header(path: Path, lines: list[str]) -> Header:
         or header.kind not in tuple(_KINDS)
         or not 2 <= header.version < 4
     ):
-        raise LogError(f"{path}: this is no RINEX file of version 2 or 3 by its first line; convert the log again.")
+        raise LogError(f"{path}: by its first line this is not a RINEX file of version 2 or 3; convert the log again.")
     alpha, beta, system = np.zeros(4), np.zeros(4), ""
     codes: dict[str, list[str]] = {}
     for number, line in enumerate(lines, 1):

@@ -1,4 +1,4 @@
-"""SP3 files: where satellites were and what their clocks showed, computed afterwards.
+"""SP3 files: precise positions and clocks of satellites, computed afterwards.
 
 Source: S. Hilla, The Extended Standard Product 3 Orbit Format (SP3-d), 2016.
 """
@@ -21,7 +21,7 @@ _NO_CLOCK = 999_999.0  # [µs]; what is as large or larger stands for none
 
 
 class Orbits(NamedTuple):
-    """T epochs of S satellites, NaN where none is told."""
+    """T epochs of S satellites, NaN where there is none."""
 
     time: Float[np.ndarray, " T"]  # [s of GPS time]
     satellites: tuple[str, ...]
@@ -51,7 +51,7 @@ def read_orbits(path: Path) -> Orbits:
     """
     lines = lines_of(path)
     if not lines or not looks_sp3(lines[0].encode()):
-        raise LogError(f"{path}: this is no SP3 file by its first line (#c or #d, and P or V); download it again.")
+        raise LogError(f"{path}: by its first line this is not an SP3 file (#c or #d, and P or V); download it again.")
     times: list[float] = []
     rows: list[dict[str, list[float]]] = []
     damage = []

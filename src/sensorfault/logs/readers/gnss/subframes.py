@@ -1,4 +1,4 @@
-"""Ephemerides out of the bits that satellites send: GPS's LNAV subframes and Galileo's I/NAV words.
+"""Ephemerides from navigation messages: LNAV subframes of GPS and I/NAV words of Galileo.
 
 Source: IS-GPS-200 (2022), figure 20-1 and tables 20-I, 20-III, 20-X; Galileo OS SIS ICD (2021), tables 37 to 47. How
 u-blox packs them: F9 HPG interface description, RXM-SFRBX.
@@ -74,7 +74,7 @@ _INAV_HEALTH = Field(5, 69, 2, 0, signed=False)
 
 
 class Subframes:
-    """Gathers what one satellite sends until an ephemeris is whole. `system`: G, J or E."""
+    """Collects the subframes of one satellite until an ephemeris is complete. `system`: G, J or E."""
 
     def __init__(self, system: str) -> None:
         self.system = system

@@ -1,7 +1,6 @@
-"""u-blox receivers' own protocol (`.ubx`): raw measurements, what the satellites broadcast, and the receiver's fixes.
+"""The protocol of u-blox receivers (`.ubx`): raw measurements, navigation messages, and fixes.
 
-Framed here and not by pyubx2, which tests read it with for comparison: that needs 2.6 s for 1.5 MB, and where a length
-is damaged it loses up to 64 kB of sound messages behind it.
+Not by pyubx2 (the tests compare with it): it is slow, and after a damaged length it loses up to 64 kB of good messages.
 
 Source: u-blox F9 HPG 1.32 interface description (UBX-22008968): 3.2 frame, RXM-RAWX, RXM-SFRBX, NAV-PVT.
 """
@@ -45,7 +44,7 @@ def read_ubx(path: Path, ask: Ask) -> Tables:
             if broadcast.satellites:
                 seen = with_satellites(seen, broadcast)
             else:
-                notes.append(f"{path.name}: no whole ephemeris was broadcast meanwhile; {NONE.split(';')[1].strip()}")
+                notes.append(f"{path.name}: it has no complete ephemeris; {NONE.split(';')[1].strip()}")
             tables[SATELLITES] = seen.table(path, notes)
     if solutions and ask.wants(FIXES):
         tables[FIXES] = fixes(path, solutions)

@@ -68,7 +68,7 @@ def _epochs(raw: list[bytes]) -> Iterator[tuple[float, np.ndarray]]:
 
 
 def _heard(every: np.ndarray, system: int) -> tuple[Bool[np.ndarray, " N"], bool]:
-    """Which sound measurements are of a system's first band that was heard at all, and whether that is its second."""
+    """Which good measurements are of the first band received of their system, and whether that is its second band."""
     sound = (every["status"] & 1 == 1) & (every["satellite"] != _NO_NUMBER) & (every["system"] == system)
     of_bands = [sound & np.isin(every["signal"], band) for band in _BANDS[SYSTEMS[system]]]
     return next(
