@@ -11,8 +11,12 @@ import io
 import sys
 from importlib.machinery import ModuleSpec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:  # sensorfault is imported when libraries are blocked, not before
+    from sensorfault.logs import Log
 
 VERBS = (
     ("demo",),
@@ -40,7 +44,7 @@ class Blocked:
         return None
 
 
-def healthy(seed: int):  # noqa: ANN201: sensorfault is imported after libraries are blocked
+def healthy(seed: int) -> "Log":
     """60 s at 50 Hz of a gyroscope and an accelerometer that share three causes."""
     import sensorfault as sf
     from sensorfault.logs import Channel, Sensor

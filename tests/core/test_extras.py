@@ -105,7 +105,6 @@ def test_other_extras_are_imported_late() -> None:
 
 
 def test_a_monitor_needs_the_core_installation_only(tmp_path: Path) -> None:
-    (tmp_path / "x.csv").write_text("time,gyro_x\n0,1\n1,2\n")
     path = tmp_path / "model.sensorfault"
     sf.save(sf.fit(core_only.healthy(0), "linear-conditioning"), path)
     program = [sys.executable, "-W", "error", core_only.__file__, path, *EXTRA_OF]

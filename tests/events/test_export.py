@@ -2,6 +2,7 @@
 
 import csv
 import json
+import sys
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from mcap.writer import Writer
 
 from logs.written_ros import bag2
 from logs.written_ros import mcap as recorded
+from sensorfault.core.extras import MissingLibrary
 from sensorfault.events.event import Event
 from sensorfault.events.export import write_events
 from sensorfault.logs import Channel, Log, LogError, Sensor
@@ -184,7 +186,7 @@ def test_what_cannot_be_written(tmp_path: Path) -> None:
 
 
 def test_a_viewer_that_is_not_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sensorfault.events.export.write.find_spec", lambda name: None)
-    with pytest.raises(LogError, match=r"pip install 'sensorfault\[viewers\]'"):
+    monkeypatch.setitem(sys.modules, "foxglove", None)
+    with pytest.raises(MissingLibrary, match=r"pip install 'sensorfault\[viewers\]'"):
         write_events(EVENTS, log(), tmp_path / "events.mcap")
     assert not list(tmp_path.iterdir())
