@@ -1,4 +1,4 @@
-"""Tapes: what healthy data make of a monitor whose limits are off."""
+"""Open-loop scores: a monitor with its limits off, replayed over healthy data."""
 
 from typing import Any
 
@@ -23,12 +23,12 @@ from sensorfault.stages.threshold.fixed import Fixed
 def uncalibrated(monitor: Monitor) -> Monitor:
     """The monitor with all its limits off."""
     off = [Fixed(jnp.full(shape.shape, jnp.inf)) for shape in jax.eval_shape(_scores, monitor)]
-    made: Monitor = eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, off)
-    return made
+    switched_off: Monitor = eqx.tree_at(lambda m: [branch.threshold for branch in m.branches], monitor, off)
+    return switched_off
 
 
 def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
-    """The scores of an empty sample."""
+    """The scores of an empty sample, for their shapes."""
     channels = len(monitor.owner)
     none = jnp.zeros(channels, bool)
     sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none)
@@ -36,19 +36,19 @@ def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
 
 
 def open_loop_scores(uncalibrated: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
-    """The scores of every branch over a log, NaN where a test had nothing to test."""
+    """The scores of every branch over a log; NaN where nothing was tested."""
     return tuple(np.asarray(score) for score in replay_log(uncalibrated, log).scores)
 
 
 def extra_tape(residual: Stage[Any, Sample, Residual, Any], log: Log) -> Any:
-    """`extra` of a residual generator's every sample on a healthy log, all of it trusted."""
+    """`extra` of a residual generator for every sample of a healthy log; all samples are trusted."""
     channels = len(log.channels)
     silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
     monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
     rows = samples(log.time, log.value, log.fresh)
-    return jax.tree.map(np.asarray, _told(monitor, monitor.init(), rows))
+    return jax.tree.map(np.asarray, _extra(monitor, monitor.init(), rows))
 
 
 @jax.jit
-def _told(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
+def _extra(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
     return replay(monitor, state, rows, lambda report: report.residual.extra)[1]

@@ -55,7 +55,7 @@ def drift(log: Log, test: DriftTest) -> Model:
     score, level = (tape[:, part.measured] for tape in open_loop_scores(uncalibrated, log))
     if not np.isfinite(score).any():
         raise LogError(
-            f"{log.name} has no stretch of {setting.window_s:g} s without a gap, the window of {test.name}; give it a "
+            f"{log.name} has no stretch of {setting.window_s:g} s without a gap, which {test.name} needs; give it a "
             "longer flight, or one with fewer gaps."
         )
     limit = setting.margin * float(np.nanmax(score))

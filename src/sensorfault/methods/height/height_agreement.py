@@ -99,9 +99,8 @@ def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray,
     tested = np.isfinite(score)
     if tested[:, len(free.pairs) :].any(axis=1).sum() * log.period_s < LEAST_S:
         raise LogError(
-            f"{log.name} is {log.duration_s:.0f} s long, but {NAME} needs {2 * LEAST_S:g} s of heights without a gap: "
-            "one "
-            "minute to start and one to compare; give a longer flight."
+            f"{log.name} is {log.duration_s:.0f} s long, but {NAME} needs {2 * LEAST_S:g} s of heights without a gap; "
+            "give a longer flight."
         )
     largest = (FREE_M * np.where(tested, score, 0.0).max(axis=0)).reshape(free.limit.shape)
     known = tested.any(axis=0).reshape(free.limit.shape)

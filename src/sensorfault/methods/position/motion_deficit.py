@@ -126,7 +126,7 @@ def _checked(log: Log) -> Roles:
         raise LogError(
             f"{log.name} moves for {seconds:.0f} s, but motion-deficit needs {LEAST_MOVING_S:g} s above "
             f"{LEAST_SPEED:g} "
-            "m/s to learn what is healthy; give a longer drive."
+            "m/s to learn what is healthy; give a drive that moves."
         )
     return found
 
