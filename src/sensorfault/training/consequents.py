@@ -12,7 +12,7 @@ RIDGE = 1e-6  # two features may be equal, and a rule may apply to few rows
 
 
 class Numbers(NamedTuple):
-    """The trained numbers of premises, or the gradient of the error. A tuple, because equinox would take most of the time."""
+    """The trained numbers of premises, or the gradient of the error. A tuple, because equinox would be slow here."""
 
     center: Float[np.ndarray, " P"]
     width: Float[np.ndarray, " P"]

@@ -26,7 +26,7 @@ PUSHED = 0.5  # standard deviation of the upward acceleration that an inertial u
 
 
 def fit_height_kalman(log: Log, height: int, roles: Roles) -> HeightKalman:
-    """The filter of this height, with the other channels of the log: climb rate, barometer, inertial unit with attitude.
+    """The filter of this height, with the log's other channels: climb rate, barometer, inertial unit with attitude.
 
     Measurement noise comes from third differences, process noise from increments. Then all variances are scaled so that
     the mean square of the height's normalised innovation is 1, which does not change the filter's gain.

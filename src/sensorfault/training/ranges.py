@@ -43,7 +43,7 @@ class _Tape(NamedTuple):
 
 
 def surfaced(log: Log, vehicle: Follower) -> Float[np.ndarray, "T L"]:
-    """Error of each range from the fix and the leader's position at its tick [m], equation (26); NaN: one is missing."""
+    """Error of each range from fix and leader position at its tick [m], equation (26); NaN where one is missing."""
     rows = samples(log.time, log.value, log.fresh)
     expected = np.asarray(jax.jit(jax.vmap(_by_fix, in_axes=(None, 0)))(vehicle, rows))
     ranges = list(vehicle.observed)
