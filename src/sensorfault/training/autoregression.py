@@ -17,7 +17,10 @@ def fit_autoregression(windows: Windows) -> Linear:
         LogError: no window.
     """
     if not len(windows.first):
-        raise LogError(f"no {windows.length} rows follow each other without a gap, so nothing can be fitted; give a
-        longer log.") x = np.concatenate([windows.matrix(), np.ones((len(windows.first), 1))], axis=1) # min ||x W' -
-        y|| found = np.linalg.lstsq(x, windows.target)[0] return Linear(Dense(jnp.asarray(found[:-1].T),
-        jnp.asarray(found[-1])))
+        raise LogError(
+            f"no {windows.length} rows follow each other without a gap, so nothing can be fitted; give a longer log."
+        )
+    x = np.concatenate([windows.matrix(), np.ones((len(windows.first), 1))], axis=1)
+    # min ||x W' - y||
+    found = np.linalg.lstsq(x, windows.target)[0]
+    return Linear(Dense(jnp.asarray(found[:-1].T), jnp.asarray(found[-1])))

@@ -42,10 +42,11 @@ def fit_bicycle(
         LogError: the wheelbase is not positive, a channel is missing, or the car hardly moves.
     """
     if wheelbase_m is not None and not wheelbase_m > 0:
-        raise LogError(f"{log.name}: wheelbase_m is {wheelbase_m:g} and must be positive; give the distance of the
-        axles.") check_bicycle(log, found) fitted = _descend(_start(log, found, wheelbase_m, steering_ratio), log,
-        found) healthy: BicycleKalman = eqx.tree_at(lambda m: m.spread, fitted, jnp.asarray(healthy_spread(fitted,
-        log))) return healthy
+        raise LogError(f"{log.name}: wheelbase_m is {wheelbase_m:g}; it must be positive, the distance of the axles.")
+    check_bicycle(log, found)
+    fitted = _descend(_start(log, found, wheelbase_m, steering_ratio), log, found)
+    healthy: BicycleKalman = eqx.tree_at(lambda m: m.spread, fitted, jnp.asarray(healthy_spread(fitted, log)))
+    return healthy
 
 
 def check_bicycle(log: Log, found: Roles) -> None:
@@ -108,8 +109,9 @@ def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: fl
     except LogError:
         if not steered:
             raise
-        # the drive is too straight to find the gyro's mounting, which is not needed here
-        forward, push = _push(log, found)
+        forward, push = _push(
+            log, found
+        )  # the drive is too straight to find the gyro's mounting, which is not needed here
     else:
         forward = mounted.thrust * mounted.forward
         push = float(forward @ mounted.accelerometer_bias)
