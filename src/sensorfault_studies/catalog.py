@@ -1,4 +1,4 @@
-"""The studies: a name, the paper, and what runs it."""
+"""The studies: name, paper, and the function that runs each."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from sensorfault_studies.xu2023.study import study as xu2023
 
 @dataclass(frozen=True)
 class Study:
-    """`experiments`: the title of each, by what its rows call it."""
+    """A study of one paper. `experiments`: code in the rows -> title."""
 
     name: str
     title: str
@@ -27,50 +27,50 @@ STUDIES: dict[str, Study] = {
     for study in (
         Study(
             "min2021",
-            "Shorts, jams and abnormal motion of a car",
+            "Spikes, frozen positions and abnormal motion of a car",
             "Min et al. 2021",
             min2021,
             {
-                "A1": "Shorts of gyro and accelerometer",
-                "A2": "Jams of the position",
+                "A1": "Spikes of gyro and accelerometer",
+                "A2": "Frozen positions",
                 "A3": "Abnormal motion: is the residual normal?",
-                "A4": "Bias and miss",
+                "A4": "Offset and missing",
             },
         ),
         Study(
             "niu1998",
-            "Sensors of a robot arm, and a network that learns while it watches",
+            "Sensors of a robot arm, and a network that learns online",
             "Niu & Zhao 1998",
             niu1998,
             {"B": "Drifts, and faults of all kinds"},
         ),
         Study(
             "multistep",
-            "Incipient drift of an aircraft's height, seen by an observer of many steps",
+            "Incipient drift of an aircraft's height, and a multi-step observer",
             "Wang S. et al.",
             multistep,
             {
-                "D": "Ramps, observed over N steps",
-                "D-slow": "Slow drift against a barometer, over a minute or more",
-                "D-who": "Who is accused when a height drifts",
+                "D": "Ramps, with an observer over N steps",
+                "D-slow": "Slow drift against a barometer, over one minute or more",
+                "D-who": "Which sensor is isolated when a height drifts",
             },
         ),
         Study(
             "wang2023",
-            "Satellites of a train that lie, one at a time or half of them",
+            "Faulty satellites of a train, one at a time or half of them",
             "Wang et al. 2023",
             wang2023,
-            {"C": "A filter of satellites and inertial unit, and who is left out of it"},
+            {"C": "GNSS/INS filter, and the satellites that it excludes"},
         ),
         Study(
             "xu2023",
-            "Ranges under water that lie, and fuzzy rules that foretell by how much",
+            "Faulty ranges under water, and fuzzy rules that predict their error",
             "Xu et al. 2023",
             xu2023,
             {
                 "E": "Two leaders, one follower",
-                "E-rules": "What can be learned of a range's error, every range taken in",
-                "E-ranging": "Real ranges: walkers by radio, robots to landmarks, a dive by sound",
+                "E-rules": "How well the error of a range can be learned, with every range used",
+                "E-ranging": "Real ranges: pedestrians by radio, robots to landmarks, a dive by sound",
             },
         ),
     )

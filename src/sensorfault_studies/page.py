@@ -1,4 +1,4 @@
-"""The page of a study: its tables, figures and remarks in one HTML file that opens anywhere, offline."""
+"""The page of a study: its tables, figures and remarks in one HTML file that works offline."""
 
 import json
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from sensorfault_studies.tables import PAPER, Cell, Table, grouped, tables, thin
 def page(study: Study, findings: Findings, facts: str) -> str:
     """The page as text; `facts`: commit and effort in one line.
 
-    A figure whose name begins with an experiment's stands below its tables; the others stand behind all of them.
+    A figure whose name begins with an experiment's code is placed below its tables; the other figures come last.
     """
     from plotly.offline import get_plotlyjs
 
@@ -49,7 +49,7 @@ def titled(study: Study, code: str) -> str:
 
 
 def _home(figure: Figure, codes: Sequence[str]) -> str | None:
-    """The experiment whose name a figure's begins with; the longest name, if several do."""
+    """The experiment whose code begins the figure's name; the longest code if several match."""
     own = (code for code in codes if figure.name.lower().startswith(code.lower()))
     return max(own, key=len, default=None)
 

@@ -146,6 +146,6 @@ def test_what_they_cannot_run_on() -> None:
     minute = kinematic_observer.Setting(spans_s=(60.0,))
     assert "0 runs of 300 heights without a gap" in sentence(lambda: build(flown.flight(50.0), 0, SILENT, minute))
     lone = multistep_observer.Setting(spans_s=(100.0,), schedule=HURRIED)
-    assert "no unbroken run of 500 steps" in sentence(lambda: multistep_observer.build(whole, 0, SILENT, lone))
+    assert "no 500 heights in a row without a gap" in sentence(lambda: multistep_observer.build(whole, 0, SILENT, lone))
     short = whole.between(end_s=14.0)
     assert "measurements of gnss.altitude" in sentence(lambda: multistep_observer.build(short, 0, SILENT))

@@ -274,14 +274,14 @@ def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.Mon
 
     def experiment(code: str) -> Callable[[Effort], Findings]:
         def run(effort: Effort) -> Findings:
-            effort.tell("going", 0.5)
+            effort.progress("going", 0.5)
             return Findings((replace(ONE, experiment=code, seeds=effort.seeds),), (Figure("f", "", "", {}),), (code,))
 
         return run
 
     assert list(min2021.EXPERIMENTS) == list(STUDIES["min2021"].experiments) == ["A1", "A2", "A3", "A4"]
     monkeypatch.setattr(min2021, "EXPERIMENTS", {code: experiment(code) for code in ("A1", "A2")})
-    findings = STUDIES["min2021"].run(Effort(7, tell=lambda doing, share: result.append((doing, share))))
+    findings = STUDIES["min2021"].run(Effort(7, progress=lambda doing, share: result.append((doing, share))))
     assert [(row.experiment, row.seeds) for row in findings.rows] == [("A1", 7), ("A2", 7)]
     assert [figure.name for figure in findings.figures] == ["a1-f", "a2-f"]
     assert findings.remarks == ("A1", "A2")

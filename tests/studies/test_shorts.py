@@ -116,7 +116,7 @@ def quick_findings() -> Findings:
     names = ("elm-autoencoder", "bp-autoencoder", "pca", "linear-conditioning")
     pairs = [(rival, plain(rival.method)) for rival in candidates(quick=True)]
     assert tuple(rival.method for rival, _ in pairs) == names
-    return study.told_of("simulated", pairs, (3.0, 5.0))
+    return study.results("simulated", pairs, (3.0, 5.0))
 
 
 def test_what_is_told() -> None:
@@ -191,7 +191,7 @@ def test_backpropagation_copies_better_and_so_sees_less(real_data: Path) -> None
 def test_a_quick_look(real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
     result: list[float] = []
-    found = study.shorts(Effort(quick=True, tell=lambda doing, share: result.append(share)))
+    found = study.shorts(Effort(quick=True, progress=lambda doing, share: result.append(share)))
     assert {row.data for row in found.rows} == {"dresden_50hz", "drive0708"}
     assert {row.magnitude for row in found.rows} == {None, 3.0, 5.0}
     assert len(found.figures) == len(found.remarks) == 2

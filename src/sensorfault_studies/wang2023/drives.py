@@ -85,7 +85,7 @@ def judged(condition: Condition, numbers: Numbers, effort: Effort) -> None:
         numbers.add(condition.words, NONE, {"innovation_sd": float(np.nanstd(run)), "healthy_hrmse_m": rmse})
     lies = condition.lies[1:3] if effort.quick else condition.lies
     for k, one in enumerate(every):
-        effort.tell(f"{condition.words}: {one.name}", k / len(every))
+        effort.progress(f"{condition.words}: {one.name}", k / len(every))
         for words, monitor in _variants(one, of, calibration, condition, numbers):
             result = flown(monitor, of, free)
             if one.name != NONE:

@@ -79,7 +79,7 @@ def nlos(effort: Effort) -> Findings:
     numbers = Numbers("C", "smartloc", "real")
     for i, wheels in enumerate((True, False)):
         for k, way in enumerate(WAYS):
-            effort.tell(f"smartLoc: {way.method}", (i * len(WAYS) + k) / (2 * len(WAYS)))
+            effort.progress(f"smartLoc: {way.method}", (i * len(WAYS) + k) / (2 * len(WAYS)))
             words = f"{way.condition} {'wheels' if wheels else 'bare'}"
             numbers.add(words, way.method, scores(of, through(of, way, wheels)))
     for words, score in (("cn0-alone", -of.cn0), ("known-place", _known_place(of))):

@@ -24,7 +24,7 @@ def rides(numbers: Numbers, effort: Effort) -> None:
     taught = ride(LONG_S, TAUGHT).log
     logs = [ride(LONG_S, FIRST + k).log for k in range(1 if effort.quick else RIDES)]
     for k, method in enumerate(METHODS):
-        effort.tell(f"rides: {method}", k / len(METHODS))
+        effort.progress(f"rides: {method}", k / len(METHODS))
         model = fit(taught, method, held_out=0.0)
         for seed, log in enumerate(logs):
             alarms = len(detect(model, log).events)

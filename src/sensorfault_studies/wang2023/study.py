@@ -35,4 +35,4 @@ def study(effort: Effort) -> Findings:
 
 
 def _part(effort: Effort, begin: float, share: float) -> Effort:
-    return replace(effort, tell=lambda doing, done: effort.tell(doing, begin + share * done))
+    return replace(effort, progress=lambda doing, done: effort.progress(doing, begin + share * done))

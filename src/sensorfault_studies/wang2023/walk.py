@@ -94,7 +94,7 @@ def injected(effort: Effort) -> Findings:
     ]
     values = np.stack([inject(of.epochs, [fault], 0).log.value for fault, _ in cases])
     for k, method in enumerate((NONE, *METHODS)):
-        effort.tell(f"walk: {method}", k / (1 + len(METHODS)))
+        effort.progress(f"walk: {method}", k / (1 + len(METHODS)))
         monitor = watching(of, method, np.inf if method == NONE else learned(of, method))
         healthy, lying = navigated(monitor, of.epochs), many(monitor, of.epochs, values)
         if method != NONE:

@@ -70,7 +70,7 @@ def judged(condition: Condition, effort: Effort) -> Result:
     for k, one in enumerate(every):
         name = f"{one.name} {one.words}".strip()
         words = f"{condition.words} {one.words}".strip()
-        effort.tell(f"{condition.data} {condition.words}: {name}", k / len(every))
+        effort.progress(f"{condition.data} {condition.words}: {name}", k / len(every))
         flown = [through(one.make(case), case) for case in cases]
         tables = np.array([table(run.flagged, case) for run, case in zip(flown, cases, strict=True)])
         gated = one.name != "ungated-ackf"

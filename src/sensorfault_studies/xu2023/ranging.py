@@ -22,7 +22,7 @@ def findings(effort: Effort) -> Findings:
     """
     made = []
     for k, (doing, one) in enumerate((("walkers", _walks), ("a dive", _dive), ("robots", _robots))):
-        effort.tell(f"real ranges: {doing}", k / 3)
+        effort.progress(f"real ranges: {doing}", k / 3)
         made.append(one(effort))
     return sum(made[1:], made[0])
 

@@ -23,7 +23,7 @@ POOL, SEEN = 300, 1000  # seeds of the first missions learned from and judged
 
 def findings(effort: Effort) -> Findings:
     """Open loop: every range is taken in, as in the training of the paper."""
-    effort.tell("rules from much and from little", 0.0)
+    effort.progress("rules from much and from little", 0.0)
     many = 3 if effort.quick else 8
     pool, seen = ([scenario(first + k) for k in range(many)] for first in (POOL, SEEN))
     numbers = Numbers("E-rules", "simulated", "simulated")
