@@ -87,7 +87,7 @@ def test_the_papers_number_stands_beside_ours() -> None:
 
 def test_magnitudes_stand_across_and_methods_below_each_other() -> None:
     (table,) = tables(sweep())
-    assert table.title == "short by magnitude [σ]"
+    assert table.title == "spike by magnitude [σ]"
     assert table.source == "real logs with injected faults"
     assert (table.labels, table.heads) == (("data", "metric", "method", "condition"), ("1", "3", "10"))
     assert [labels[:3] for labels, _ in table.rows[:4]] == [
@@ -199,7 +199,7 @@ def test_the_page_has_tables_figures_and_remarks() -> None:
     figures = (Figure("a1-roc", "ROC", "Upper left is better.", plot), Figure("other", "Else", "See.", plot))
     seen = shown(Findings((replace(ONE, data="else"), *sweep()), figures, ("A remark.",)))
     text = " ".join(seen.words)
-    for words in ("Min et al. 2021", "A1 Shorts", "commit 123 & more", "0.84", "±0.01", "0.90", "ROC", "A remark."):
+    for words in ("Min et al. 2021", "A1 Spikes", "commit 123 & more", "0.84", "±0.01", "0.90", "ROC", "A remark."):
         assert words in text
     assert text.index("Upper left") < text.index("Else")
     assert all(f"{row.value:.0f}" in text for row in sweep())

@@ -1,4 +1,4 @@
-"""Paper C: a train's satellites that lie, told by innovations, by local outlier factors, and by leaving one out."""
+"""Wang et al. 2023: faulty satellites of a train, by innovations, local outlier factors and leaving one out."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ def study(effort: Effort) -> Findings:
     """All of C.
 
     Raises:
-        LogError: the real logs are not there; said before any work is done.
+        LogError: the real logs do not exist; raised before any work is done.
     """
     for folder in (drive.FOLDER, smartloc.FOLDER, walk.FOLDER):
         real(folder)
