@@ -23,7 +23,7 @@ PART, TIMES = 50, 3
 
 
 def on_cpu(work: Work, own: Any, count: int) -> tuple[float, float, Any]:
-    """One core's time and that of all cores [s], and what was told."""
+    """Time on one core and on all cores [s], and the output."""
     shared = jax.device_put(work.shared, jax.devices("cpu")[0])
     cores = cpu_count() or 1
     size = min(PART, -(-count // cores))
@@ -41,7 +41,7 @@ def on_cpu(work: Work, own: Any, count: int) -> tuple[float, float, Any]:
 
 
 def on_gpu(work: Work, own: Any) -> tuple[float, float, float, Any]:
-    """How long it takes from NumPy to NumPy, how long there, how long compiling took [s]; and what was told."""
+    """Times from NumPy to NumPy, on the device, and for compilation [s]; and the output."""
     gpu = jax.devices("gpu")[0]
     shared = jax.device_put(work.shared, gpu)
 

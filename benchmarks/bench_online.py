@@ -52,7 +52,7 @@ def two_joints(rows: int) -> Log:
 
 
 class Scaled:
-    """What ours sees and foretells, for the peers: y(k), u(k+1), u(k) on [-1, 1], and increments in their own unit."""
+    """Inputs and targets of our network, for the peers: y(k), u(k+1), u(k) on [-1, 1], and scaled increments."""
 
     def __init__(self, log: Log, model: sf.Model) -> None:
         own = model.monitor.residual

@@ -35,7 +35,7 @@ class Work(NamedTuple):
     shared: Any
     own: Callable[[int], Any]
     sizes: tuple[int, ...]
-    agree: float  # bar: greatest difference, relative to the greatest number told
+    agree: float  # bar: largest difference, relative to the largest output
 
 
 def kept(report: Report) -> tuple[jax.Array, jax.Array]:
