@@ -1,4 +1,4 @@
-"""Many runs at once on a GPU against all cores of the CPU beside it: the same function, from NumPy to NumPy.
+"""Many runs at once on a GPU against all cores of the CPU: the same function, from NumPy to NumPy.
 
 Faulty runs through the navigation (60 s, 100 inertial rows and nine satellites a second), followers with two leaders,
 drives at 50 Hz through the default recipe, all in float64; and LSTMs in training. A CPU takes its share part by part,
@@ -55,7 +55,7 @@ def on_gpu(work: Work, own: Any) -> tuple[float, float, float, Any]:
 
 
 def best(work: Callable[[], Any]) -> tuple[float, Any]:
-    """The shortest time of a few [s], and what came out."""
+    """The shortest of several times [s], and the output."""
     result: list[Any] = []
 
     def once() -> None:
@@ -65,7 +65,7 @@ def best(work: Callable[[], Any]) -> tuple[float, Any]:
 
 
 def agree(ours: Any, theirs: Any) -> tuple[float, float]:
-    """Of runs whose verdicts are the same the greatest difference, relative to the greatest number; share of others."""
+    """Largest relative difference of runs with equal verdicts, and the share of runs with different verdicts."""
     numbers, *verdicts = jax.tree.leaves(ours)
     expected, *others = jax.tree.leaves(theirs)
     same = np.ones(len(numbers), bool)
@@ -77,7 +77,7 @@ def agree(ours: Any, theirs: Any) -> tuple[float, float]:
 
 def compare(work: Work, most: int, bars: Bars) -> None:
     print(
-        f"\n{work.name:30}{'one core s':>12}{'all cores s':>12}{'GPU s':>9}{'there s':>9}{'times':>8}{'compiled s':>12}"
+        f"\n{work.name:30}{'one core s':>12}{'all cores s':>12}{'GPU s':>9}{'on it s':>9}{'times':>8}{'compiled s':>12}"
     )
     worth = ""
     for count in [size for size in work.sizes if size <= most]:

@@ -1,4 +1,4 @@
-"""A GNSS/INS run at once, and a thousand faulty runs together against the same loop in NumPy.
+"""One GNSS/INS run, and a thousand faulty runs at once against the same loop in NumPy.
 
 The run: 413 s of a simulated train, 100 inertial rows and nine satellites a second. The nominal state goes with every
 row, the covariance twice a second. Compiling is not counted. The campaign: the last EPOCHS of that run, a step of 15 m

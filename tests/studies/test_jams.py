@@ -1,4 +1,4 @@
-"""A2 on the real drives: what EXPERIMENTS asks of the motion deficit."""
+"""A2 on the real drives: the expected results of the motion deficit."""
 
 from functools import cache
 from pathlib import Path

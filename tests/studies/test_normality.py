@@ -1,4 +1,4 @@
-"""A3: the pieces on simulated numbers; on the real drives, what EXPERIMENTS asks for."""
+"""A3: the parts on simulated numbers; on the real drives, the expected results."""
 
 from functools import cache
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A1: how the spikes are made, counted and told; on the real drives, what EXPERIMENTS asks for."""
+"""A1: how the spikes are injected, counted and reported; on the real drives, the expected results."""
 
 from functools import cache
 from pathlib import Path
@@ -146,7 +146,7 @@ def test_what_is_told() -> None:
     assert "leads by" in found.remarks[0]
 
 
-# What EXPERIMENTS asks for. The whole study (five seeds, all sizes) takes minutes: run 'sensorfault reproduce min2021'.
+# The expected results. The whole study (five seeds, all sizes) takes minutes: run 'sensorfault reproduce min2021'.
 
 ELM = {"dresden_50hz": (0.67, 0.82, 0.89, 0.96, 1.0), "gnss_imu_drive0708": (0.57, 0.68, 0.80, 0.95, 1.0)}
 CONDITIONING = {"dresden_50hz": (0.82, 0.96, 0.99), "gnss_imu_drive0708": (0.79, 0.93, 0.97)}

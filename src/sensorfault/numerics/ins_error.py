@@ -2,7 +2,7 @@
 
 17 errors, estimate minus truth: attitude ψ, velocity, position (3 each, in ECEF), what gyros and accelerometers show
 too much (3 each, body axes), clock offset [m] and drift [m/s]; behind them one clock offset [m] for each further system
-of satellites. METHODS.md C; Groves (2013), section 14.2.3.
+of satellites. Wang et al. 2023; Groves (2013), section 14.2.3.
 """
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
