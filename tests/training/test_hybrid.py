@@ -233,7 +233,7 @@ def test_five_rows_or_one_that_is_not_finite_are_refused() -> None:
         ((features[:5], target[:5]), "5 measurements"),
         ((bad, target), "row 7"),
         ((features, unknown), "row 9"),
-        ((-features, target), "below zero"),
+        ((-features, target), "is negative"),
     ):
         with pytest.raises(LogError, match=words) as raised:
             fit_anfis(*case)

@@ -27,8 +27,8 @@ class Memory(NamedTuple):
     many: Float[Array, " P"]
     recent: Float[Array, "R P"]  # the newest beats' means, the newest last [m]
     lived: Bool[Array, "R P"]  # whether there was one
-    clean: Bool[Array, "R P"]  # whether it was believed
-    past: Float[Array, "Q P"]  # what was believed before them [m]
+    clean: Bool[Array, "R P"]  # whether it was trusted
+    past: Float[Array, "Q P"]  # trusted means before them [m]
     trusted: Bool[Array, "Q P"]
     kept: Float[Array, "2 P"]  # [m]
     sure: Bool[Array, "2 P"]

@@ -27,7 +27,7 @@ class Navigation(NamedTuple):
 class Rows(NamedTuple):
     """R rows of an inertial unit: turn rates [rad/s] and specific force [m/s²] in body axes, and for how long each [s].
 
-    `ok`: the row may be believed; a row of no length is none.
+    `ok`: the row can be trusted; a row of length 0 does not count.
     """
 
     gyro: Float[Array, "R 3"]

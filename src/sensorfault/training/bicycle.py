@@ -74,8 +74,7 @@ def check_bicycle(log: Log, found: Roles) -> None:
     if seconds < LEAST_MOVING_S:
         raise LogError(
             f"{log.name} moves faster than 2 m/s for {seconds:.0f} s, but the bicycle model needs {LEAST_MOVING_S:g} "
-            "s; "
-            "give a drive that moves."
+            "s; give a drive that moves."
         )
 
 

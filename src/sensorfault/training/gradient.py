@@ -101,8 +101,7 @@ def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
     if min(len(before), len(after)) < LEAST:
         raise LogError(
             f"{len(order)} windows of {windows.length} rows are too few: {len(before)} for training and {len(after)} "
-            "for "
-            f"validation, but {LEAST} of each are needed; give a longer log."
+            f"for validation, but {LEAST} of each are needed; give a longer log."
         )
     learn, judge = (
         windows._replace(first=windows.first[rows], target=windows.target[rows]) for rows in (before, after)

@@ -53,8 +53,10 @@ def _by_length(drive: Drive, rows: Sequence[Row]) -> Figure:
         x, y = [row.magnitude for row in of], [round(row.value, 4) for row in of]
         data.append({"type": "scatter", "mode": "lines+markers", "name": name, "x": x, "y": y})
     layout = {
-        "xaxis": {"title": {"text": "length of the jam [s]"}, "type": "log"},
+        "xaxis": {"title": {"text": "length of the fault [s]"}, "type": "log"},
         "yaxis": {"title": {"text": "F1"}, "range": [0, 1.02]},
     }
-    caption = "F1 against the length of the jam, each method with its own limit; flag-all is what no method may miss."
-    return Figure(f"jam_f1_{drive.name}", f"F1 of jams, {drive.name}", caption, {"data": data, "layout": layout})
+    caption = "F1 over the length of the fault, each method with its own limit; flag-all: every fix is called frozen."
+    return Figure(
+        f"jam_f1_{drive.name}", f"F1 of frozen positions, {drive.name}", caption, {"data": data, "layout": layout}
+    )

@@ -207,21 +207,19 @@ def _slippage(part: object) -> bool:
 def _remarks(done: list[Judged]) -> tuple[str, ...]:
     remarks = [
         "A2: latitude and longitude freeze together, at the receiver's own epochs, while the car is faster than "
-        f"{LEAST_SPEED:g} m/s. After each fault one second is not scored, and a healthy pause of one to two lengths of "
-        "the fault follows. All other new positions of the rest of the drive count as healthy, also while the car "
+        f"{LEAST_SPEED:g} m/s. After each fault one second is not scored, and a healthy pause of one to two lengths "
+        "of the fault follows. All other new positions of the rest of the drive count as healthy, also while the car "
         "stands.",
         "A2: the paper's printed F1 of 0.703 (LSTM), 0.452 (MLP) and 0.434 (AR) do not follow from its precision and "
         "recall, which give 0.718, 0.464 and 0.415. Its accuracies and recalls imply that about half of its samples "
-        "are "
-        "anomalous; calling every sample anomalous then has F1 0.67.",
+        "are anomalous; calling every sample anomalous then has F1 0.67.",
         "A2: open-loop is each method's own limit on open-loop scores; as-run is the verdict of the monitor in closed "
         "loop, which rejects distrusted fixes. as-printed is open-loop for the paper's methods and as-run for "
         f"{METHOD}, whose references are trusted fixes by definition. auc and far1e-2 are open-loop for all methods.",
         "A2: far1e-2 sets each limit on every other ten seconds of the test part without faults, and tests the other "
         "half.",
         f"A2: 'no-repeats' is {METHOD} without its test of exact repeats (distance travelled while the position "
-        "repeats "
-        "to the last bit), which would not work with a receiver that adds noise to a frozen position.",
+        "repeats to the last bit), which would not work with a receiver that adds noise to a frozen position.",
     ]
     for judged in done:
         if judged.smallest:

@@ -24,25 +24,21 @@ RIVALS = ("motion-deficit", "side-force", "car")
 REMARKS = (
     "In the paper the Jarque-Bera statistic stays below 0.34 over a whole test drive. Of windows of 500 independent "
     "normal numbers only one in six does, so such a small maximum shows that the residuals were smoothed, not that "
-    "they "
-    "are normal. On real logs the statistic is far larger: innovations at 50 Hz are correlated, and a receiver's "
-    "errors "
-    "come in bursts.",
+    "they are normal. On real logs the statistic is far larger: innovations at 50 Hz are correlated, and a "
+    "receiver's errors come in bursts.",
     "The statistic does not change if all residuals are shifted or scaled. It must be used together with the mean, the "
     "variance and the whitened innovation, never alone.",
     "The errors of a GNSS receiver that smooths its fixes are correlated over time. The fit sets the spread of the "
     "innovations but cannot make them independent, so the limits come from healthy blocks of time, not from a table.",
     "The training part of the Dresden drive contains a position jump of 5 m (at 28.9 s) and others of a metre. Limits "
     "from the quartiles of the block maxima do not learn them, and the model reports them on its own training drive.",
-    "Without a wheel speed sensor no channel shows a wheel slip, because the receiver measures the true speed. On the "
-    "RAV4 (steering-angle form of (16), wheelbase 2.65 m, steering ratio fitted) the slip is injected; its drive of 60 "
-    "s "
-    "is too short to calibrate the windows, which therefore raise no alarm there.",
+    "Without a wheel speed sensor no channel shows a wheel slip, because the receiver measures the true speed. On "
+    "the RAV4 (steering-angle form of (16), wheelbase 2.65 m, steering ratio fitted) the slip is injected; its drive "
+    "of 60 s is too short to calibrate the windows, which therefore raise no alarm there.",
     "The receiver of the Dresden drive has a lag of 0.9 s, so healthy turns look like slides and the filter detects "
     "hardly any slide there. The measured side force against speed times turn rate (side-force) does not use the "
     "receiver's position: it detects slides from about 2 m/s. Smaller and slower slides are within the effect of a "
-    "bumpy "
-    "road.",
+    "bumpy road.",
     "A position fault is reported as abnormal motion here: the method assumes healthy sensors, as the paper does. A "
     "recipe that tests the sensors first can separate the two.",
 )

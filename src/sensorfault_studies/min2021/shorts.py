@@ -110,8 +110,8 @@ def _remarks(data: str, pairs: Pairs) -> tuple[str, ...]:
     return (
         f"{data}: with 32 hidden nodes for 6 inputs both networks nearly copy their inputs, including spikes. At "
         f"{PLAIN:g} sigma the extreme learning machine is better by {main[ELM] - main[BACKPROP]:+.3f} because it "
-        "copies "
-        "values outside the training range less well, not because it models the drive better. Models that cannot copy "
-        "(principal components, 3 hidden nodes, C = 0.01) and models that use earlier rows are compared here. Share of "
-        f"such a spike left in the residual, healthy residual as share of a channel's sigma, AUC: {by_method}.",
+        "copies values outside the training range less well, not because it models the drive better. Models that "
+        "cannot copy (principal components, 3 hidden nodes, C = 0.01) and models that use earlier rows are compared "
+        "here. Share of such a spike left in the residual, healthy residual as share of a channel's sigma, AUC: "
+        f"{by_method}.",
     )

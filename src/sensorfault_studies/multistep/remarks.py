@@ -30,12 +30,11 @@ def _reading(result: Drift) -> str:
     return (
         f"D: 70 % of the flight is for training and sets all limits except those of {MATCHED}; the rest is the test "
         f"part. Ramps begin every {EVERY_S:g} s (150 steps at 5 Hz) and last {FAULTY_S:g} s or to the end of the "
-        "flight. "
-        "A step that cannot be tested has no alarm; a ramp without an alarm counts with its whole length. chance: the "
-        "same spans without a ramp. Our interpretations: the network predicts increments, in proportion to the time "
-        "between two fixes; fusion concatenates all inputs; all steps share their weights (separate-weights: as in the "
-        "paper's figure 3); step j has weight N + 1 - j; training stops by the training loss. The paper does not give "
-        "the initial weights and the batches of its network, nor the tuning of its EKF."
+        "flight. A step that cannot be tested has no alarm; a ramp without an alarm counts with its whole length. "
+        "chance: the same spans without a ramp. Our interpretations: the network predicts increments, in proportion "
+        "to the time between two fixes; fusion concatenates all inputs; all steps share their weights "
+        "(separate-weights: as in the paper's figure 3); step j has weight N + 1 - j; training stops by the training "
+        "loss. The paper does not give the initial weights and the batches of its network, nor the tuning of its EKF."
     )
 
 
@@ -65,15 +64,13 @@ def _matched(result: Drift) -> str:
         f"D, {result.data}, at a common false alarm rate, N = {FEW}, {MANY} and, without a network, {LONGEST}. Limits "
         f"that 1 % of the training steps exceed ({HARD}): kinematic {pair(KINEMATIC, HARD, steps)}, network "
         f"{pair(NETWORK, HARD, steps)}; over the whole flight ({WHOLE}) kinematic "
-        f"{pair(KINEMATIC, f'{HARD} {WHOLE}', steps)}. The test part is calmer "
-        f"({', '.join(f'{x:.1%}' for x in far)} of its healthy steps exceed the kinematic limits), so also with limits "
-        f"that 1 % of its own healthy steps exceed ({MATCHED}, for comparison only): kinematic "
-        f"{pair(KINEMATIC, MATCHED, steps)}, network {pair(NETWORK, MATCHED, steps)}. A longer roll-out detects more "
-        "if "
-        "its inputs can be trusted. The network's own error grows nearly as fast as a ramp: "
-        f"{_rms(result, NETWORK)} m RMS at N = {FEW} and {MANY}; with the receiver's vertical speed alone it is "
-        f"{_rms(result, KINEMATIC)} m. That speed and the height come from one receiver: neither observer detects a "
-        "fault of both."
+        f"{pair(KINEMATIC, f'{HARD} {WHOLE}', steps)}. The test part is calmer ({', '.join(f'{x:.1%}' for x in far)} "
+        "of its healthy steps exceed the kinematic limits), so also with limits that 1 % of its own healthy steps "
+        f"exceed ({MATCHED}, for comparison only): kinematic {pair(KINEMATIC, MATCHED, steps)}, network "
+        f"{pair(NETWORK, MATCHED, steps)}. A longer roll-out detects more if its inputs can be trusted. The network's "
+        f"own error grows nearly as fast as a ramp: {_rms(result, NETWORK)} m RMS at N = {FEW} and {MANY}; with the "
+        f"receiver's vertical speed alone it is {_rms(result, KINEMATIC)} m. That speed and the height come from one "
+        "receiver: neither observer detects a fault of both."
     )
 
 

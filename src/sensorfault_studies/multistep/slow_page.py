@@ -33,8 +33,7 @@ def _reading() -> str:
         f"half of the flight. Ramps begin every {EVERY_S:g} s in the second half, until {LEAST_S:g} s before its end. "
         "A ramp that is not detected counts with the time to the end of the flight; so does chance_delay_s, the first "
         f"alarm without a ramp. {MATCHED}: the lowest limit without a false alarm in that same half, for a comparison "
-        "at "
-        f"a common false alarm rate; it cannot be set before the flight. {SHORT}: windows of 60 s. {PLAIN}: no lag "
+        f"at a common false alarm rate; it cannot be set before the flight. {SHORT}: windows of 60 s. {PLAIN}: no lag "
         "between the two heights. No test uses the receiver's vertical speed, so height-and-vd repeats height."
     )
 
@@ -46,8 +45,7 @@ def _found(result: Slow) -> str:
         detected.append(f"{method} detects 0.1, 0.3 and 1 m/s after {_times(one)} with {one.false} false events")
     return (
         f"D-slow, {result.data}: {'; '.join(detected)}. The barometer is assumed healthy: the difference of two "
-        "heights "
-        "does not show which of them drifts."
+        "heights does not show which of them drifts."
     )
 
 
@@ -75,9 +73,8 @@ def _swept(result: Sequence[Slow]) -> tuple[str, ...]:
     windows = ", ".join(f"{w:g}" for w in sorted(set.intersection(*clean)))
     return (
         f"D-slow: the window of {drift_setting.DEFAULT.window_s:g} s was chosen on these same two flights, because "
-        "there "
-        f"are no others. The slope has no false event on either flight with windows of {windows} s. A training flight "
-        "of five minutes is too short to verify longer windows.",
+        f"there are no others. The slope has no false event on either flight with windows of {windows} s. A training "
+        "flight of five minutes is too short to verify longer windows.",
     )
 
 

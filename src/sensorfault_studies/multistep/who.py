@@ -150,12 +150,11 @@ def _remarks(result: Sequence[Numbers]) -> tuple[str, ...]:
         "the drifting sensor is named during the ramp. wrong_exclusions: another sensor is named. chance: a fault is "
         f"reported without a ramp. {GATE}: each innovation of the companion filter against the textbook limit at "
         f"{ALPHA:g}, or against limits above all scores of the first half ({CALM}); the largest is excluded. "
-        f"{kinematic_observer.NAME} uses the receiver alone; the tests of D-slow name it whichever sensor drifts. With "
-        "receiver and barometer alone, a receiver whose height and speed drift together cannot be distinguished from a "
-        "drifting barometer: the right answer is then 'unknown which'. The smallest limits of "
+        f"{kinematic_observer.NAME} uses the receiver alone; the tests of D-slow name it whichever sensor drifts. "
+        "With receiver and barometer alone, a receiver whose height and speed drift together cannot be distinguished "
+        "from a drifting barometer: the right answer is then 'unknown which'. The smallest limits of "
         f"{height_agreement.NAME}, {jump:.3g} m for a jump and {drift:.3g} m for a drift, were chosen after these "
-        "flights "
-        "and those of two copters, whose healthy data exceed lower limits.",
+        "flights and those of two copters, whose healthy data exceed lower limits.",
         *(sentence for one in result for sentence in _sentences(one)),
     )
 

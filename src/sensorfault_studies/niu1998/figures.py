@@ -104,7 +104,6 @@ def of_isolation(accused: Int[np.ndarray, "12 13"]) -> Figure:
     }
     caption = (
         f"{NETWORK} on the Schunk arm: spike, offset and frozen of five one-step errors; limits that one healthy "
-        "sample "
-        "in a hundred exceeds on any sensor."
+        "sample in a hundred exceeds on any sensor."
     )
     return Figure("b_isolation", "Isolation on the real arm", caption, {"data": [heat], "layout": layout})

@@ -52,8 +52,7 @@ def _seeds(effort: Effort) -> str:
         f"test, {seeds * RUNS} test runs in all; on the real arm {each} faults of each kind and size on each sensor. "
         f"{AT_RATE}: limits that 5 % of other healthy runs exceed before sample {ONSET}. far: share of runs with an "
         "alarm before that sample. detection_rate: share of runs with both drifts detected at sample 51 or 52. "
-        "untested: "
-        "share of the earlier samples in which the four sensors are unknown."
+        "untested: share of the earlier samples in which the four sensors are unknown."
     )
 
 
@@ -73,10 +72,9 @@ def _network(run: Drifts) -> str:
         f"B: the recipe, trained before on healthy runs of the same motion and learning increments: {variants[0]}. The "
         f"same with random initial weights ('{SCRATCH}'): {variants[1]}. Absolute values learned from scratch, each "
         f"sample to convergence, as in the paper ('{AS_PRINTED}'): {variants[2]}. Learning to convergence also learns "
-        "the "
-        "noise, so the other variants correct a prediction by a third of its error. A trained network has learned the "
-        f"motion, not the arm: with the limits of {AT_RATE} and a start from {ELSEWHERE.start}, the shares of healthy "
-        f"runs with an early alarm are {elsewhere}."
+        "the noise, so the other variants correct a prediction by a third of its error. A trained network has learned "
+        f"the motion, not the arm: with the limits of {AT_RATE} and a start from {ELSEWHERE.start}, the shares of "
+        f"healthy runs with an early alarm are {elsewhere}."
     )
 
 
@@ -86,14 +84,10 @@ def _plain(run: Drifts) -> str:
     return (
         f"B: with the paper's thresholds persistence raises an early alarm in {early:.0%} of the runs, because the "
         "largest slope already uses up the threshold and the difference of two measurements has √2 times their noise. "
-        "At "
-        f"the common false alarm rate it detects both drifts as early in {found[PLAIN[0]]:.0%}, linear extrapolation "
-        "in "
-        f"{found[PLAIN[1]]:.0%}, and the Kalman filter with the model of the arm in {found[KALMAN]:.0%}: a drift of "
-        "two "
-        "thresholds a sample needs no network. The filter is only as good as its model: with the other a5 (24.6 in "
-        "place "
-        "of 24.06) its recipe rejects these runs as those of another arm."
+        f"At the common false alarm rate it detects both drifts as early in {found[PLAIN[0]]:.0%}, linear "
+        f"extrapolation in {found[PLAIN[1]]:.0%}, and the Kalman filter with the model of the arm in "
+        f"{found[KALMAN]:.0%}: a drift of two thresholds a sample needs no network. The filter is only as good as its "
+        "model: with the other a5 (24.6 in place of 24.06) its recipe rejects these runs as those of another arm."
     )
 
 
@@ -135,10 +129,10 @@ def _slow(run: Drifts, effort: Effort) -> tuple[str, ...]:
     return (
         f"B: smallest tested drift that is detected within {WITHIN} samples in {FOUND:.0%} of the runs, at the common "
         f"false alarm rate [thresholds a sample]: {'; '.join(smallest_of)}. A prediction from the last measurement "
-        "shows "
-        "a drift only until the drift is learned: below one threshold a sample the next window already contains it, as "
-        "the paper says. A filter with the model of the arm accumulates it. So does the trained network for y2, whose "
-        "motion it has memorised, but not for y4, because y4 is its only information about that angle.",
+        "shows a drift only until the drift is learned: below one threshold a sample the next window already "
+        "contains it, as the paper says. A filter with the model of the arm accumulates it. So does the trained "
+        "network for y2, whose motion it has memorised, but not for y4, because y4 is its only information about "
+        "that angle.",
     )
 
 
@@ -162,28 +156,24 @@ def _real(arm: Joints) -> tuple[str, ...]:
     }
     return (
         "B, schunk: half of the runs is for training, a quarter for the limits, the last quarter for the test. The "
-        "hundred runs repeat two motions, so all motions are known. Sizes are in RMS one-step errors of the network on "
-        "healthy runs (written σ), of a drift in σ a sample; a frozen fault starts where the next measurement would "
-        "have "
-        "been 5 σ away. detection_rate: the first alarm names the faulty sensor and no other, over stretches without "
-        "an "
-        "earlier alarm; for missing: the sensor is unknown throughout and no sensor is named. Rates are predicted "
-        "without angles and angles without rates, because both were smoothed offline from each other.",
-        f"B, schunk: correct isolation among twelve sensors at five one-step errors, with limits that "
+        "hundred runs repeat two motions, so all motions are known. Sizes are in RMS one-step errors of the network "
+        "on healthy runs (written σ), of a drift in σ a sample; a frozen fault starts where the next measurement "
+        "would have been 5 σ away. detection_rate: the first alarm names the faulty sensor and no other, over "
+        "stretches without an earlier alarm; for missing: the sensor is unknown throughout and no sensor is named. "
+        "Rates are predicted without angles and angles without rates, because both were smoothed offline from each "
+        "other.",
+        "B, schunk: correct isolation among twelve sensors at five one-step errors, with limits that "
         f"{far[SHOWN]:.1%} of healthy samples exceed on any sensor: {by_kind(SHOWN)}; with {far[HARDER]:.2%}: "
         f"{by_kind(HARDER)}. Residuals are divided by their own RMS over {DEEP.rms_ticks} samples, because some parts "
-        "of "
-        f"the motion are harder to predict than others. With fixed limits, as in the paper ('{FIXED}'): "
-        f"{by_kind(f'{SHOWN} {FIXED}')}; {by_kind(f'{HARDER} {FIXED}')}. One in a hundred samples is far too often for "
-        "a "
-        f"product. In closed loop, with the named sensors excluded, {far[f'{SHOWN} as-run']:.2%} and "
+        f"of the motion are harder to predict than others. With fixed limits, as in the paper ('{FIXED}'): "
+        f"{by_kind(f'{SHOWN} {FIXED}')}; {by_kind(f'{HARDER} {FIXED}')}. One in a hundred samples is far too often "
+        f"for a product. In closed loop, with the named sensors excluded, {far[f'{SHOWN} as-run']:.2%} and "
         f"{far[f'{HARDER} as-run']:.2%} of healthy samples have an alarm ({far[f'{SHOWN} {FIXED} as-run']:.2%} and "
         f"{far[f'{HARDER} {FIXED} as-run']:.2%} with fixed limits).",
         f"B, schunk: for the same faults and the same false alarm rate, the network isolates {by_group(NETWORK)}, and "
         f"linear extrapolation {by_group(EXTRAPOLATION)}. Angles are recorded with five digits, which bounds every "
         "method; rates follow the torques, which only the network gets as inputs. There is no model of this arm, so "
-        "the "
-        "Kalman filter cannot run here.",
+        "the Kalman filter cannot run here.",
         f"B, schunk, {NEW}: with training and limits on one motion and the test on the other, the network's scores "
         f"exceed the limits of {SHOWN} in {far[f'{SHOWN} {NEW}']:.0%} of the healthy samples, and those of {HARDER} in "
         f"{far[f'{HARDER} {NEW}']:.0%}; in stretches without an earlier alarm it isolates {by_kind(f'{SHOWN} {NEW}')}. "

@@ -33,16 +33,14 @@ def _remarks(numbers: Numbers, nlos: Float[np.ndarray, "T S"]) -> Iterator[str]:
     yield (
         f"smartLoc: {int(known.sum())} labels in the first minute, {np.mean(nlos[known]):.0%} without line of sight. "
         f"Innovations of the filter with wheel speed rank them with an AUC of {found}, C/N0 alone with {alone}. "
-        "Residuals "
-        f"at the true position with the clock of the satellites in sight reach {place}; pseudoranges allow about no "
-        "more."
+        f"Residuals at the true position with the clock of the satellites in sight reach {place}; pseudoranges allow "
+        "about no more."
     )
     others = [row for row in numbers.rows() if row.method == "late" and row.condition.endswith("wheels")]
     low, high = ([f(r.value for r in others if r.metric == f"error_p{p}_m") for p in (50, 95)] for f in (min, max))
     yield (
         "smartLoc: noise and limit were chosen on this same log, among a hundred settings; with other settings the "
-        "error "
-        f"with wheel speed is {low[0]:.1f} to {high[0]:.1f} m (50 %) and {low[1]:.1f} to {high[1]:.1f} m (95 %)."
+        f"error with wheel speed is {low[0]:.1f} to {high[0]:.1f} m (50 %) and {low[1]:.1f} to {high[1]:.1f} m (95 %)."
     )
     wild = sorted({row.condition for row in numbers.rows() if row.metric == "error_p95_m" and row.value > LOST_M})
     if wild:

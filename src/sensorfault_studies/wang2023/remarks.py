@@ -18,11 +18,9 @@ def of_drives(numbers: Numbers, quick: bool) -> tuple[str, ...]:
 
 def _of_drives(numbers: Numbers, quick: bool) -> Iterator[str]:
     yield (
-        "Track and inertial unit of drive0708 are real; satellites, clock and noise are simulated. The time of day and "
-        "the "
-        "free parameters of the heavy noise were chosen so that a limit on each innovation reproduces an earlier "
-        "version "
-        "of this study; the windows and the attribution rule of rail were chosen on other seeds."
+        "Track and inertial unit of drive0708 are real; satellites, clock and noise are simulated. The time of day "
+        "and the free parameters of the heavy noise were chosen so that a limit on each innovation reproduces an "
+        "earlier version of this study; the windows and the attribution rule of rail were chosen on other seeds."
     )
     if quick:
         yield "A quick run: few runs with faults, limits from few healthy runs, 15 m in place of all steps."
@@ -32,20 +30,17 @@ def _of_drives(numbers: Numbers, quick: bool) -> Iterator[str]:
     equal = f"{INFLATED.words} {EQUAL}"
     same = [numbers.mean(equal, m, "detection_rate", "step", STEPS) for m in (CHI_SQUARE, LOF)]
     yield (
-        f"The paper's difference, for a step of 15 m: if the filter assumes twice the true noise, chi-square at the "
+        "The paper's difference, for a step of 15 m: if the filter assumes twice the true noise, chi-square at the "
         f"textbook limit flags {one:.0%} of the epochs and lof-efd {other:.0%}, but lof-efd has false alarms in "
-        f"{far:.0%} "
-        f"of the healthy epochs, where its kernel density is set for 1 %. At a common false alarm rate they flag "
-        f"{same[0]:.0%} and {same[1]:.0%}: a local outlier factor of a single number is a limit on that number."
+        f"{far:.0%} of the healthy epochs, where its kernel density is set for 1 %. At a common false alarm rate they "
+        f"flag {same[0]:.0%} and {same[1]:.0%}: a local outlier factor of a single number is a limit on that number."
     )
     textbook = f"{HEAVY.words} {PRINTED}"
     aime = ", ".join(f"{numbers.mean(textbook, f'aime-{w}', 'far'):.0%}" for w in (10, 30, 60))
     yield (
         f"Averaged innovations at the textbook limit raise false alarms in {aime} of the healthy epochs (10, 30, 60 "
-        "s), "
-        "because the noise is not white. With so many exclusions the filter diverges; position errors above a "
-        "kilometre "
-        "count as a kilometre."
+        "s), because the noise is not white. With so many exclusions the filter diverges; position errors above a "
+        "kilometre count as a kilometre."
     )
     off_rate = [
         f"{key.method} {values[0]:.2%}"
@@ -57,8 +52,7 @@ def _of_drives(numbers: Numbers, quick: bool) -> Iterator[str]:
     if off_rate:
         yield (
             f"Not at the designed rate on other healthy runs, so not comparable: {', '.join(off_rate)} (raw "
-            "innovations "
-            "need different limits, because low satellites have more noise)."
+            "innovations need different limits, because low satellites have more noise)."
         )
     yield _best(numbers)
 
@@ -79,8 +73,7 @@ def _best(numbers: Numbers) -> str:
             found.append(f"{kind} {size:g}: {own:.0%}, the best other {rivals[best]:.0%} ({best})")
     return (
         f"Share of the faulty epochs that rail flags, at a common false alarm rate: {'; '.join(found)}. Memory helps, "
-        "and "
-        "a filter that does not use the tested satellite; no method is best for every fault."
+        "and a filter that does not use the tested satellite; no method is best for every fault."
     )
 
 
@@ -91,6 +84,5 @@ def of_rides(numbers: Numbers) -> tuple[str, ...]:
     )
     return (
         f"False alarms an hour on simulated rides of a train, with the limits that each recipe sets itself: {rates}. "
-        "rail "
-        "is designed for one; rides of ten minutes are too short to verify that.",
+        "rail is designed for one; rides of ten minutes are too short to verify that.",
     )

@@ -47,8 +47,7 @@ def _flags(name: str, title: str, result: Result, j: int) -> Figure:
     }
     caption = (
         f"The paper's figures 13 to 15 on the first mission: an error above {WRONG_M:g} m is an anomaly; marks below "
-        "the "
-        "axis: ranges flagged by each method."
+        "the axis: ranges flagged by each method."
     )
     return Figure(name, title, caption, {"data": data, "layout": layout})
 

@@ -73,8 +73,7 @@ def surface(name: str, title: str, model: Anfis, seen: Labelled) -> Figure:
         }
     caption = (
         "The paper's figure 12; points: training data. R* is R max(1, M²), and M² grows with |r|, so the points lie "
-        "near "
-        "one line; away from it the surface is extrapolated."
+        "near one line; away from it the surface is extrapolated."
     )
     return Figure(name, title, caption, {"data": data, "layout": layout})
 

@@ -45,8 +45,8 @@ def _robots(effort: Effort) -> Findings:
     real, injected = Numbers("E-ranging", "mrclam", "real"), Numbers("E-ranging", "mrclam", "injected")
     compared(real, FITTED, every, dict.fromkeys(METHODS, 1.0), _rows(every))
     compared(real, MATCHED, every, factors, _rows(every))
-    lying = [struck(one, seed=1) for one in every]
-    compared(injected, MATCHED, lying, {"ungated-ackf": 1.0} | factors, _rows(every))
+    faulty = [struck(one, seed=1) for one in every]
+    compared(injected, MATCHED, faulty, {"ungated-ackf": 1.0} | factors, _rows(every))
     rows = (*real.rows(), *injected.rows())
     return Findings(rows, (), (of_robots(real, injected),))
 

@@ -20,13 +20,12 @@ def of_walks(numbers: Numbers, every: Sequence[Watched]) -> str:
     recalls = ", ".join(f"{method} {value:.3f}" for method, value in recall.items())
     return (
         f"E, uwb_outdoor, real: {len(every)} walks. {wrong} of {ranges} test ranges are wrong by more than five robust "
-        "standard deviations of their anchor. The first third of each walk gives the clock lag, the height of the tag, "
-        "these standard deviations and the noise of the filters. There is no odometry: the follower is a random walk. "
-        f"Recall with fitted limits and similar false alarm rates: {recalls}; the missed ranges are wrong by less than "
-        "a "
-        "metre. For the position the adaptive R alone is as good as the gates: 95 % of the errors are below "
-        f"{p95[OPEN]:.1f} m without a gate, {p95[OURS]:.1f} m with cooperative, and {p95['ungated-ckf']:.1f} m for the "
-        "plain filter without a gate."
+        "standard deviations of their anchor. The first third of each walk gives the clock lag, the height of the "
+        "tag, these standard deviations and the noise of the filters. There is no odometry: the follower is a random "
+        f"walk. Recall with fitted limits and similar false alarm rates: {recalls}; the missed ranges are wrong by "
+        "less than a metre. For the position the adaptive R alone is as good as the gates: 95 % of the errors are "
+        f"below {p95[OPEN]:.1f} m without a gate, {p95[OURS]:.1f} m with cooperative, and {p95['ungated-ckf']:.1f} m "
+        "for the plain filter without a gate."
     )
 
 
@@ -38,15 +37,13 @@ def of_dive(numbers: Numbers, groups: Mapping[str, Bool[np.ndarray, "T L"]]) -> 
 
     return (
         "E, ugps_g2, real: no truth, so consistency but no detection rate. The receivers' positions are fitted to the "
-        "device's own positions in the first half; the ranges of the second half are tested. valid_r only says whether "
-        f"there is a range. {int(groups['impossible'].sum())} ranges differ from two others by more than the distance "
-        "of "
-        f"the receivers and cannot be right. cooperative rejects {refused('impossible'):.2f} of these and "
+        "device's own positions in the first half; the ranges of the second half are tested. valid_r only says "
+        f"whether there is a range. {int(groups['impossible'].sum())} ranges differ from two others by more than the "
+        f"distance of the receivers and cannot be right. cooperative rejects {refused('impossible'):.2f} of these and "
         f"{refused(''):.3f} of all, {refused('weak-third'):.3f} of the weakest third and {refused('strong-third'):.3f} "
-        "of "
-        f"the strongest. chi-square-ackf-01 rejects {refused('', RIVAL):.3f} of all: 54 s after the start the reported "
-        "depth jumps by 0.6 m and all four ranges are rejected at once; cooperative, which increases its process noise "
-        "with every rejection, recovers sooner."
+        f"of the strongest. chi-square-ackf-01 rejects {refused('', RIVAL):.3f} of all: 54 s after the start the "
+        "reported depth jumps by 0.6 m and all four ranges are rejected at once; cooperative, which increases its "
+        "process noise with every rejection, recovers sooner."
     )
 
 
@@ -65,12 +62,10 @@ def of_robots(real: Numbers, injected: Numbers) -> str:
     return (
         "E, mrclam, real: the noise comes from the truth of each robot's first third, because the maximum-likelihood "
         "noise is far too small: the error of a range to one landmark hardly changes for seconds. Therefore the "
-        "nominal "
-        f"0.01 becomes {rate(RIVAL, FITTED, 'fpr'):.2f} ({RIVAL}) and {rate(OURS, FITTED, 'fpr'):.2f} ({OURS}) of the "
-        f"healthy ranges, and the gates make the position worse: {rate(OPEN, FITTED, 'error_p95_m'):.1f} m without, "
-        f"{rate(RIVAL, FITTED, 'error_p95_m'):.1f} and {rate(OURS, FITTED, 'error_p95_m'):.1f} m with them (95 %). "
-        f"Limits that {RATE:.1%} of the healthy ranges of the first thirds exceed ({MATCHED}) do not. With one "
-        "landmark "
-        "after the other frozen or drifting by 0.05 m/s for a minute, recall for frozen and drift is: "
+        f"nominal 0.01 becomes {rate(RIVAL, FITTED, 'fpr'):.2f} ({RIVAL}) and {rate(OURS, FITTED, 'fpr'):.2f} ({OURS}) "
+        f"of the healthy ranges, and the gates make the position worse: {rate(OPEN, FITTED, 'error_p95_m'):.1f} m "
+        f"without, {rate(RIVAL, FITTED, 'error_p95_m'):.1f} and {rate(OURS, FITTED, 'error_p95_m'):.1f} m with them "
+        f"(95 %). Limits that {RATE:.1%} of the healthy ranges of the first thirds exceed ({MATCHED}) do not. With one "
+        "landmark after the other frozen or drifting by 0.05 m/s for a minute, recall for frozen and drift is: "
         f"{found}. After a faulty range is used, correct ranges are rejected, so the false alarm rates differ."
     )

@@ -24,18 +24,14 @@ def _reading() -> str:
     return (
         f"E: a range with an error above {WRONG_M:g} m is an anomaly, as in the paper. Each mission contains "
         f"{sum(ANOMALIES)} of them in the test part, or as close to that as frozen faults of at most a minute allow. "
-        "The "
-        "paper gives neither the paths of the leaders nor the errors of velocity and heading. The leaders' speed (0.7 "
-        "to "
-        "1.2 m/s above the follower's, on each of two swings) was set so that the chi-square rows agree with an "
-        "earlier "
-        "version of this study, before any other method was tested on such missions. pooled: trained on "
+        "The paper gives neither the paths of the leaders nor the errors of velocity and heading. The leaders' speed "
+        "(0.7 to 1.2 m/s above the follower's, on each of two swings) was set so that the chi-square rows agree with "
+        "an earlier version of this study, before any other method was tested on such missions. pooled: trained on "
         f"{POOLED} other missions, both leaders; one-mission: on the first 600 s alone, as in the paper. fpr2e-2: each "
         f"method's limits are multiplied by one factor such that at most {MATCHED:.0%} of the healthy ranges of those "
         f"{POOLED} missions are flagged; a method that cannot reach this has no such row. given-noise: cooperative "
-        "with "
-        "the noise that the other methods are given; by default it fits the noise on the first 600 s. The settings of "
-        "the pooled rules and of cooperative were chosen on twelve other missions of each kind."
+        "with the noise that the other methods are given; by default it fits the noise on the first 600 s. The "
+        "settings of the pooled rules and of cooperative were chosen on twelve other missions of each kind."
     )
 
 
@@ -67,6 +63,5 @@ def _lockouts(result: Sequence[Result]) -> Iterator[str]:
             times = ", ".join(f"{method} {value:.0f} s" for method, value in found.items())
             yield (
                 "E: longest time without an accepted range after both leaders were frozen for 200 s, over all "
-                "missions: "
-                f"{times}."
+                f"missions: {times}."
             )

@@ -22,8 +22,7 @@ RECIPE = Recipe(
     title="Inertial unit and attitude by linear conditioning, heights against each other, position against velocity",
     source="Wang S. et al. and the methods that did better in this project's study (`sensorfault reproduce multistep`)",
     false_alarm_rate="one false alarm an hour for inertial unit and position, extrapolated from healthy scores; "
-    "heights: "
-    "not designed, each limit is 50 % above the largest healthy difference",
+    "heights: not designed, each limit is 50 % above the largest healthy difference",
     build=_build,
     parts=PARTS,
 )

@@ -80,8 +80,7 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
     if log.duration_s < needed:
         raise LogError(
             f"{log.name} lasts {log.duration_s:.0f} s, but {name} needs {needed:.0f} s to learn what is healthy; give "
-            "a "
-            "longer flight."
+            "a longer flight."
         )
     part = Difference(
         beat_s=jnp.asarray(setting.beat_s),
@@ -107,8 +106,7 @@ def _two_heights(name: str, log: Log) -> tuple[int, int]:
         lacks = "no height of a satellite receiver" if found.height is None else "no height of a barometer"
         raise LogError(
             f"{log.name} has {lacks}, but {name} compares both; name the columns in vehicle.toml, or take a method "
-            "that "
-            "needs only one."
+            "that needs only one."
         )
     return found.height, found.barometric
 

@@ -157,12 +157,10 @@ NAME = "height-agreement"
 RECIPE = Recipe(
     name=NAME,
     title="Receiver, barometer and vertical speeds, compared in pairs over a minute; isolates the sensor if a third "
-    "source "
-    "can decide",
+    "source can decide",
     source="this project's own study (`sensorfault reproduce multistep`): mean pair against an independent reference",
     false_alarm_rate="not designed: each limit is 50 % above the largest healthy difference; a flight of minutes is "
-    "too "
-    "short to measure the rate of a test with a memory of a minute",
+    "too short to measure the rate of a test with a memory of a minute",
     build=build,
     needs=lambda log: _height_sources(log, roles(log)),
 )

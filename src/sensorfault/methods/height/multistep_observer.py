@@ -133,8 +133,7 @@ def _calibrated(
 RECIPE = Recipe(
     name=NAME,
     title="Height predicted over 12 steps by a network that feeds its own prediction back; the limit follows a "
-    "companion "
-    "filter and the observer's own error",
+    "companion filter and the observer's own error",
     source="Wang S. et al., multi-step neural network observer of a flapping-wing aircraft",
     false_alarm_rate=f"{PER_HOUR:g} false alarm an hour, from the tail of residual over limit on data not used for "
     "training",

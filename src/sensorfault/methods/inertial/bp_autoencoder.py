@@ -22,8 +22,8 @@ RECIPE = Recipe(
     title="Autoencoder trained by backpropagation; norm of the reconstruction error; limit: largest training error, "
     "scaled",
     source="Min et al. 2021, section 3.1, compared there with the extreme learning machine",
-    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
-    "data",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
+    "held-out data",
     build=build,
     needs=lambda log: Training.of(NAME, log),
 )

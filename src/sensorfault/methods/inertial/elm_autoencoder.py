@@ -19,8 +19,8 @@ RECIPE = Recipe(
     name="elm-autoencoder",
     title="Extreme-learning autoencoder; norm of the reconstruction error; limit: largest training error, scaled",
     source="Min et al. 2021, section 2.1, equations (3)-(11)",
-    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
-    "data",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
+    "held-out data",
     build=_build,
     needs=partial(Training.of, "elm-autoencoder"),
 )

@@ -22,9 +22,8 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="elm-robust",
-    title="Extreme-learning autoencoder; norm of the reconstruction error; limit: largest training error after removal "
-    "of "
-    "outliers, scaled",
+    title="Extreme-learning autoencoder; norm of the reconstruction error; limit: largest training error after "
+    "removal of outliers, scaled",
     source="Min et al. 2021, section 2.1; outliers by an estimate of the tail (Hill 1975)",
     false_alarm_rate="not designed: the limit is the largest training error that is no outlier, scaled",
     build=_build,

@@ -15,9 +15,8 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="linear-conditioning",
-    title="Newest row given the four before it; largest whitened residual of a channel; limit: largest score on blocks "
-    "left "
-    "out, scaled",
+    title="Newest row given the four before it; largest whitened residual of a channel; limit: largest score on "
+    "blocks left out, scaled",
     source="conditional mean of a Gaussian vector; limit as in Min et al. 2021, equations (10)-(11), cross-validated",
     false_alarm_rate="not designed: the limit is the largest score on healthy blocks left out of the fit, scaled",
     build=_build,

@@ -19,8 +19,8 @@ RECIPE = Recipe(
     name="pca",
     title="Principal components; norm of the reconstruction error; limit: largest training error, scaled",
     source="Jackson & Mudholkar 1979; limit as in Min et al. 2021, equations (10)-(11)",
-    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
-    "data",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
+    "held-out data",
     build=_build,
     needs=partial(Training.of, "pca"),
 )

@@ -118,13 +118,11 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="bicycle-kalman",
-    title="Kalman filter on the kinematic bicycle: whitened innovation of each sample; Jarque-Bera, mean and variance "
-    "over "
-    "10 s; tests the motion, assumes healthy sensors",
+    title="Kalman filter on the kinematic bicycle: whitened innovation of each sample; Jarque-Bera, mean and "
+    "variance over 10 s; tests the motion, assumes healthy sensors",
     source="Min et al. 2021, section 3, equations (16)-(26)",
-    false_alarm_rate="one false alarm an hour, extrapolated from the block maxima of the training drive; the limits of "
-    "the "
-    "windows are 25 % higher than that",
+    false_alarm_rate="one false alarm an hour, extrapolated from the block maxima of the training drive; the limits "
+    "of the windows are 25 % higher than that",
     build=_build,
     needs=lambda log: check_bicycle(log, roles(log)),
 )

@@ -19,8 +19,7 @@ RECIPE = Recipe(
     title="Position, or each joint of an arm, on the line through the last two samples",
     source="this project's baseline for Min et al. 2021, section 2.2, and Niu & Zhao 1998",
     false_alarm_rate="position: not designed, the limit is the largest training error, scaled; fit measures the rate "
-    "on "
-    "held-out data. Joints: one false alarm an hour over all joints, from the tail of the healthy residual",
+    "on held-out data. Joints: one false alarm an hour over all joints, from the tail of the healthy residual",
     build=build,
     needs=lambda log: joints_or_position(NAME, log),
 )

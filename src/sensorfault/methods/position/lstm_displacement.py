@@ -120,11 +120,11 @@ def _positions_and_inertial(log: Log) -> tuple[Positions, tuple[int, ...]]:
 
 RECIPE = Recipe(
     name=NAME,
-    title="Displacement of the last second by an LSTM without that second's positions; limit: largest training error, "
-    "scaled",
+    title="Displacement of the last second by an LSTM without that second's positions; limit: largest training "
+    "error, scaled",
     source="after Min et al. 2021, section 2.2, for receivers that freeze at the last position (their jam fault)",
-    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
-    "data",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
+    "held-out data",
     build=build,
     needs=_positions_and_inertial,
 )

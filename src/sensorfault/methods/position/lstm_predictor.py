@@ -38,8 +38,8 @@ RECIPE = Recipe(
     name=NAME,
     title="Position predicted by two LSTM layers from the last 30 samples; limit: largest training error, scaled",
     source="Min et al. 2021, section 2.2, equations (12)-(15)",
-    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
-    "data",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
+    "held-out data",
     build=build,
     needs=lambda log: Positions.of(NAME, log),
 )

@@ -227,11 +227,10 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 RECIPE = Recipe(
     name="motion-deficit",
     title="Integrated velocity minus displacement of the position; velocity against the inertial unit",
-    source="this project's own study (`sensorfault reproduce min2021`), for the jam faults of Min et al. 2021, section "
-    "2.2",
+    source="this project's own study (`sensorfault reproduce min2021`), for the jam faults of Min et al. 2021, "
+    "section 2.2",
     false_alarm_rate="one false alarm an hour over all its tests, extrapolated from the tail of the training drive; "
-    "each "
-    "limit is 25 % higher than that",
+    "each limit is 25 % higher than that",
     build=_build,
     needs=_checked,
 )

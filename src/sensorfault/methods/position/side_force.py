@@ -65,8 +65,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 RECIPE = Recipe(
     name="side-force",
     title="Measured side force minus speed times turn rate: a car that slides, spins or is transported; tests the "
-    "motion, "
-    "assumes healthy sensors",
+    "motion, assumes healthy sensors",
     source="the bicycle of Min et al. 2021, equation (16), which does not slide; the comparison made by stability "
     "controllers (van Zanten 2000)",
     false_alarm_rate="one false alarm an hour, extrapolated from the tail of the training drive; the limit is 25 % "
