@@ -143,7 +143,7 @@ def test_what_is_told() -> None:
         "chance",
     ]
     assert len(found.remarks) == 1
-    assert "leads by" in found.remarks[0]
+    assert "is better by" in found.remarks[0]
 
 
 # The expected results. The whole study (five seeds, all sizes) takes minutes: run 'sensorfault reproduce min2021'.
