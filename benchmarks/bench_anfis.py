@@ -1,4 +1,4 @@
-"""Hybrid training of an ANFIS against anfis-toolbox's, and one inference among a follower's other work.
+"""Hybrid training of an ANFIS against anfis-toolbox, and the cost of one inference in a follower's step.
 
 Both learn the size of a range's error from the three features of its innovation, on simulated missions: two bell
 functions an input, all eight rules, the same bells to begin with, the same penalty on the consequents, EPOCHS epochs.
@@ -99,7 +99,7 @@ def training(name: str, seen: Labelled, unseen: Labelled, bars: Bars) -> None:
 
 
 def inference(model: Anfis, features: np.ndarray, bars: Bars) -> None:
-    """What one inference adds to a compiled step, and to each follower of a fleet."""
+    """Time that one inference adds to a compiled step, and to each follower of a fleet."""
     fleet = jax.jit(jax.vmap(model))
     all_of = jnp.asarray(features)
     jax.block_until_ready(fleet(all_of))

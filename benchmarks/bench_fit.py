@@ -1,4 +1,4 @@
-"""Fitting the ELM autoencoder against training the same net, all its weights, by Adam.
+"""Fitting the ELM autoencoder against training all weights of the same network by Adam.
 
 Both learn from the same rows: the first 80 % of the first half of the drive. The rest of that half is the validation
 block, the second half of the drive the test. Adam (the recipe bp-autoencoder's own training: optax, JAX, float32, an
@@ -31,7 +31,7 @@ BAR = 100
 
 @dataclass(frozen=True)
 class Setting:
-    """A batch size with a rate."""
+    """A batch size and a learning rate."""
 
     batch: int
     rate: float
@@ -44,7 +44,7 @@ SETTINGS = (Setting(128, 0.003), Setting(64, 0.003), Setting(64, 0.01), Setting(
 
 
 class Rows(NamedTuple):
-    """Scaled rows: to learn from and to stop by, to test on."""
+    """Scaled rows for training, validation and test."""
 
     train: np.ndarray
     validate: np.ndarray
@@ -119,7 +119,7 @@ def main() -> int:
     rival = min(SETTINGS, key=lambda setting: tried[setting].reach_s)
     runs = [run_adam(rows, rival, seed, validation[seed]) for seed in SEEDS]
     fit_s, reach_s = (np.array([getattr(run, name) for run in runs]) for name in ("fit_s", "reach_s"))
-    print(f"\ncomparator, the first to be as good as the ELM: {rival}; {len(SEEDS)} seeds, median (least to most)")
+    print(f"\nfor comparison, the first to reach the ELM's error: {rival}; {len(SEEDS)} seeds, median (least to most)")
     print(f"ELM   validation {spread(validation)}  test {spread(test)}")
     print(f"Adam  validation {spread([r.validation for r in runs])}  test {spread([r.test for r in runs])}")
     print(f"ELM   fit {np.median(elm_s) * 1e3:.2f} ms (best {elm_s.min() * 1e3:.2f})")

@@ -1,4 +1,4 @@
-"""Many runs at once on a GPU against all cores of the CPU beside it: the same function, from NumPy to NumPy.
+"""Many runs at once on a GPU against all cores of the CPU: the same function, from NumPy to NumPy.
 
 Faulty runs through the navigation (60 s, 100 inertial rows and nine satellites a second), followers with two leaders,
 drives at 50 Hz through the default recipe, all in float64; and LSTMs in training. A CPU takes its share part by part,
@@ -23,7 +23,7 @@ PART, TIMES = 50, 3
 
 
 def on_cpu(work: Work, own: Any, count: int) -> tuple[float, float, Any]:
-    """One core's time and that of all cores [s], and what was told."""
+    """Time on one core and on all cores [s], and the output."""
     shared = jax.device_put(work.shared, jax.devices("cpu")[0])
     cores = cpu_count() or 1
     size = min(PART, -(-count // cores))
@@ -41,7 +41,7 @@ def on_cpu(work: Work, own: Any, count: int) -> tuple[float, float, Any]:
 
 
 def on_gpu(work: Work, own: Any) -> tuple[float, float, float, Any]:
-    """How long it takes from NumPy to NumPy, how long there, how long compiling took [s]; and what was told."""
+    """Times from NumPy to NumPy, on the device, and for compilation [s]; and the output."""
     gpu = jax.devices("gpu")[0]
     shared = jax.device_put(work.shared, gpu)
 
@@ -55,7 +55,7 @@ def on_gpu(work: Work, own: Any) -> tuple[float, float, float, Any]:
 
 
 def best(work: Callable[[], Any]) -> tuple[float, Any]:
-    """The shortest time of a few [s], and what came out."""
+    """The shortest of several times [s], and the output."""
     result: list[Any] = []
 
     def once() -> None:
@@ -65,7 +65,7 @@ def best(work: Callable[[], Any]) -> tuple[float, Any]:
 
 
 def agree(ours: Any, theirs: Any) -> tuple[float, float]:
-    """Of runs whose verdicts are the same the greatest difference, relative to the greatest number; share of others."""
+    """Largest relative difference of runs with equal verdicts, and the share of runs with different verdicts."""
     numbers, *verdicts = jax.tree.leaves(ours)
     expected, *others = jax.tree.leaves(theirs)
     same = np.ones(len(numbers), bool)
@@ -77,7 +77,7 @@ def agree(ours: Any, theirs: Any) -> tuple[float, float]:
 
 def compare(work: Work, most: int, bars: Bars) -> None:
     print(
-        f"\n{work.name:30}{'one core s':>12}{'all cores s':>12}{'GPU s':>9}{'there s':>9}{'times':>8}{'compiled s':>12}"
+        f"\n{work.name:30}{'one core s':>12}{'all cores s':>12}{'GPU s':>9}{'on it s':>9}{'times':>8}{'compiled s':>12}"
     )
     worth = ""
     for count in [size for size in work.sizes if size <= most]:

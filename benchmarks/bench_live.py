@@ -47,7 +47,7 @@ def time_pyod(detector: PCA, rows: np.ndarray) -> np.ndarray:
 
 
 class Rival(NamedTuple):
-    """`finite`: scikit-learn believes that the input is. `threads`: for BLAS and OpenMP, None: as they are."""
+    """`finite`: scikit-learn assumes finite input. `threads`: for BLAS and OpenMP; None: the default."""
 
     detector: PCA
     scaled: bool

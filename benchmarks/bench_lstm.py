@@ -1,4 +1,4 @@
-"""Training and running paper A's LSTM (8 inputs, two layers of 16, 2 outputs, windows of 30) against PyTorch's nn.LSTM.
+"""Training and inference of the LSTM of Min et al. 2021 (8 inputs, 2 layers of 16, windows of 30) against nn.LSTM.
 
 Training: one epoch over the same 27,000 windows, in batches of BATCH drawn in a new order, mean square error, Adam;
 both shuffle, gather their windows and keep to float32. PyTorch has two threads and its fastest settings: Adam fused,
@@ -75,7 +75,7 @@ class OurTraining:
 
 
 def motion() -> Windows:
-    """Eight smooth signals; what they are does not matter to the clock."""
+    """Eight smooth signals; their values do not matter for the time."""
     random = np.random.default_rng(0)
     rows = np.tanh(np.cumsum(random.standard_normal((WINDOWS + LENGTH, INPUTS)), axis=0) / 50)
     first = np.arange(WINDOWS)
@@ -83,7 +83,7 @@ def motion() -> Windows:
 
 
 def epochs(windows: Windows) -> float:
-    """Our epoch in units of PyTorch's."""
+    """Our time for an epoch divided by PyTorch's."""
     ours, peers = OurTraining(windows), [PeerTraining(windows, batch_first) for batch_first in (True, False)]
     start = perf_counter()
     ours.epoch()
@@ -98,7 +98,7 @@ def epochs(windows: Windows) -> float:
 
 
 def live(windows: Windows) -> float:
-    """How many of our predictions fit into one of PyTorch's."""
+    """PyTorch's time for a prediction divided by ours."""
     net = new_lstm(0, INPUTS, OUTPUTS, (CELLS, CELLS))
     compiled = jax.jit(net.__call__)
     peers = [Peer(batch_first).eval() for batch_first in (True, False)]

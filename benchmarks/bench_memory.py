@@ -20,7 +20,7 @@ from sensorfault.methods.fit import fit
 from sensorfault.runtime.store import save
 
 MEGABYTE, BAR_TIMES = 10**6, 1.1
-SLOW = {".tlog": 10}  # a file so much smaller will do: pymavlink takes a second for two megabytes
+SLOW = {".tlog": 10}  # the file is smaller by this factor: pymavlink needs a second for two megabytes
 
 
 def peak(path: Path, model: Path, vehicle: Path, *words: str) -> tuple[float, float]:
@@ -48,7 +48,7 @@ def peak(path: Path, model: Path, vehicle: Path, *words: str) -> tuple[float, fl
 @click.option("--size", default=1000, show_default=True, help="MB of the long file; its half is the other.")
 @click.option("--way", "ways", type=click.Choice(list(WAYS)), multiple=True, default=list(WAYS))
 def main(size: int, ways: tuple[str, ...]) -> None:
-    """Peak memory on a long file over that on its half."""
+    """Peak memory on a long file divided by that on its half."""
     describe_machine()
     bars = Bars()
     with tempfile.TemporaryDirectory() as name:

@@ -1,4 +1,4 @@
-"""All trainings of paper D, one network for each N = 1 .. 15, against PyTorch taking them one after the other.
+"""All trainings of Wang S. et al., one network for each N = 1 .. 15, against PyTorch, one after the other.
 
 The same windows, batches of 32, Adam, step weights and schedule. Ours is timed whole, compilation and early stop and
 all. PyTorch (autograd, one thread, which is its fastest at this size) takes EPOCHS epochs of some N; what it would need
@@ -27,7 +27,7 @@ def fixes() -> Fixes:
     if (DATA / "uav" / "px4_fw_proto_flt09").is_dir():
         learn = Flown.of(flight("proto")).learn
         return Fixes.of(learn, 0, (1, 3, 4, 5))
-    print(f"{DATA / 'uav'} is not there (set SENSORFAULT_DATA): a simulated flight takes its place.")
+    print(f"{DATA / 'uav'} does not exist (set SENSORFAULT_DATA): a simulated flight is used.")
     random = np.random.default_rng(0)
     inputs = np.sin(np.outer(np.arange(ROWS) * FIX_S, (0.3, 0.7, 1.1, 0.2))) + 0.1 * random.standard_normal((ROWS, 4))
     height = 300 + np.cumsum(inputs[:, 0]) * FIX_S + 0.05 * random.standard_normal(ROWS)

@@ -1,4 +1,4 @@
-"""A GNSS/INS run at once, and a thousand faulty runs together against the same loop in NumPy.
+"""One GNSS/INS run, and a thousand faulty runs at once against the same loop in NumPy.
 
 The run: 413 s of a simulated train, 100 inertial rows and nine satellites a second. The nominal state goes with every
 row, the covariance twice a second. Compiling is not counted. The campaign: the last EPOCHS of that run, a step of 15 m
@@ -37,7 +37,7 @@ BAR_S, BAR_TIMES = 0.5, 50.0
 
 
 def run() -> tuple[Monitor, Log]:
-    """The monitor and the epochs, nine satellites heard all the way."""
+    """The monitor and the epochs, nine satellites received all the time."""
     true = ride(RUN_S, seed=1, noise="gaussian")
     high = np.argsort(-true.sky.elevation.mean(axis=0))[:SATELLITES]
     sky = true.sky.only(np.isin(np.arange(len(true.sky.names)), high))
@@ -63,7 +63,7 @@ def faulty(epochs: Log) -> np.ndarray:
 
 
 def campaign(own: Monitor, start: MonitorState, epochs: Log, value: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """How long all runs take together [s], and what they told."""
+    """Time of all runs [s], and their output."""
     rows = samples(epochs.time, epochs.value, epochs.fresh, epochs.block)
 
     @jax.jit

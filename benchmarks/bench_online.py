@@ -1,4 +1,4 @@
-"""One live sample of paper B's monitor (foretell, judge, learn) against PyTorch doing the same, and river.
+"""One live sample of the monitor of Niu & Zhao 1998 (predict, test, learn) against the same in PyTorch, and river.
 
 An 8:5:4 network on the four sensors and two torques of two driven joints, one sample after the other: foretell the
 increments, compare with limits, and up to ITERATIONS steps of backpropagation, fewer once the error is small. All have
@@ -52,7 +52,7 @@ def two_joints(rows: int) -> Log:
 
 
 class Scaled:
-    """What ours sees and foretells, for the peers: y(k), u(k+1), u(k) on [-1, 1], and increments in their own unit."""
+    """Inputs and targets of our network, for the peers: y(k), u(k+1), u(k) on [-1, 1], and scaled increments."""
 
     def __init__(self, log: Log, model: sf.Model) -> None:
         own = model.monitor.residual
@@ -139,7 +139,7 @@ def main() -> int:
     for (name, _), medians in zip(racers, rounds, strict=True):
         print(f"{name:48}{min(medians):12.1f}{np.median(medians):9.1f}")
     steps = (f"{peer.steps / (ROUNDS * ROWS):.1f} by {name}" for name, peer in zip(PEERS, peers, strict=True))
-    print(f"steps of learning a sample: {', '.join(steps)}\n")
+    print(f"learning steps for each sample: {', '.join(steps)}\n")
     best, torch_us, _ = map(min, rounds)
     bars = Bars()
     bars.check(f"a live sample takes {best:.1f} us; bar {BAR_US:g}", best <= BAR_US)

@@ -1,4 +1,4 @@
-"""Logs to samples, against the bare libraries' own reading of the same files: CSV by polars, the others by their own.
+"""Reading logs to samples, against the bare libraries on the same files: polars for CSV, the others by their own.
 
 All files are written here: five million rows of CSV, and 100 MB (less where the library needs minutes for that) of each
 other format. `read` is timed whole, with a vehicle file: parse, clock, units, fresh marks. The best of a few: two cores
@@ -27,7 +27,7 @@ MEGABYTE = 1_000_000
 
 @dataclass(frozen=True)
 class Case:
-    """A file and how a bare library reads it to arrays; `times`: how often that is timed."""
+    """A file and the bare library's reader; `times`: number of timed runs."""
 
     name: str
     path: Path
@@ -61,18 +61,18 @@ def ubx(path: Path, size: int) -> Path:
 
 def ulog(path: Path, size: int) -> Path:
     """One topic of ten floats."""
-    said = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0)
+    head = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0)
 
     def message(kind: str, body: bytes) -> bytes:
         return struct.pack("<HB", len(body), ord(kind)) + body
 
-    said += message("F", b"sensor_combined:uint64_t timestamp;float[3] gyro_rad;float[7] accelerometer_m_s2;")
-    said += message("A", struct.pack("<BH", 0, 0) + b"sensor_combined")
+    head += message("F", b"sensor_combined:uint64_t timestamp;float[3] gyro_rad;float[7] accelerometer_m_s2;")
+    head += message("A", struct.pack("<BH", 0, 0) + b"sensor_combined")
     count = size // 53
     rows = np.zeros(count, np.dtype([("size", "<u2"), ("kind", "u1"), ("id", "<u2"), ("t", "<u8"), ("v", "<f4", 10)]))
     rows["size"], rows["kind"], rows["t"] = 50, ord("D"), 4000 * np.arange(count)
     rows["v"] = np.random.default_rng(0).normal(0, 0.1, (count, 10))
-    path.write_bytes(said + rows.tobytes())
+    path.write_bytes(head + rows.tobytes())
     return path
 
 
@@ -103,7 +103,7 @@ def timed(path: Path, vehicle: VehicleFile, times: int = TIMES) -> float:
 
 
 def in_turn(case: Case) -> tuple[float, float]:
-    """The best of either [s], each by turns, so that what else the machine does meets both."""
+    """The best time of each [s], measured alternately so that other load affects both."""
     vehicle, took, bare = guess(case.path), [], []
     for _ in range(case.times):
         took.append(timed(case.path, vehicle, 1))

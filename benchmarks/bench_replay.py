@@ -1,4 +1,4 @@
-"""An hour of driving through the ELM monitor, a fleet of 256, and how long `sensorfault --help` keeps a person waiting.
+"""An hour of driving through the ELM monitor, a fleet of 256, and the time of `sensorfault --help`.
 
 The hour is simulated: no real log at hand is that long. Compiling is not counted, and printed.
 """
@@ -29,7 +29,7 @@ def verdicts(report: Report) -> Verdict:
 
 
 def first_and_rest(work: partial) -> tuple[float, np.ndarray]:
-    """How long the first call takes, which compiles, and the later ones [s]."""
+    """Time of the first call, which compiles, and of the later calls [s]."""
     start = perf_counter()
     jax.block_until_ready(work())
     first = perf_counter() - start
@@ -44,7 +44,7 @@ def report(name: str, first: float, rest: np.ndarray, count: int) -> float:
 
 
 def fleet_of(log: sf.Log, monitor: sf.Monitor) -> partial:
-    """The hour cut in 256 drives, each through a monitor state of its own."""
+    """The hour split into 256 drives, each with its own monitor state."""
     length = len(log) // VEHICLES
     cut = slice(0, length * VEHICLES)
     time = np.broadcast_to(log.time[:length], (VEHICLES, length))

@@ -1,4 +1,4 @@
-"""What the benchmarks share: data, a line about the machine, clocks, and bars that are met or missed."""
+"""Shared by the benchmarks: data, a line about the machine, timing, and bars that are met or missed."""
 
 import os
 from collections.abc import Callable
@@ -17,25 +17,25 @@ DATA = Path(os.environ.get("SENSORFAULT_DATA", Path(__file__).parents[2] / "shar
 
 
 def road_log() -> sf.Log:
-    """The six fast channels of the Dresden drive, 216 s at 50 Hz; without the real logs, of a simulated one."""
+    """The six fast channels of the Dresden drive, 216 s at 50 Hz; without the real logs, of a simulated drive."""
     file = DATA / "road" / "dresden_50hz" / "2014-03-26-000-Data.csv"
     if file.is_file():
         log = sf.read(file)
     else:
-        print(f"{file} is not there (set SENSORFAULT_DATA): a simulated drive takes its place.")
+        print(f"{file} does not exist (set SENSORFAULT_DATA): a simulated drive is used.")
         log = sf.drive(216.0).log
     return log.select(IMU)
 
 
 def describe_machine() -> None:
-    """Cores, how busy they are with other work, and the threads of every BLAS and OpenMP library loaded."""
+    """Print number of cores, load, and the threads of every loaded BLAS and OpenMP library."""
     pools = {f"{p['prefix']} {p['num_threads']}" for p in threadpool_info()}
     load = ", ".join(f"{x:.2f}" for x in os.getloadavg())
     print(f"{os.cpu_count()} cores, load {load}; threads: {', '.join(sorted(pools)) or 'none'}; jax {jax.__version__}")
 
 
 def seconds(work: Callable[[], Any], times: int) -> np.ndarray:
-    """How long `work` takes [s], each of so many times."""
+    """Times of `work` [s], for several runs."""
     took = []
     for _ in range(times):
         start = perf_counter()
@@ -45,7 +45,7 @@ def seconds(work: Callable[[], Any], times: int) -> np.ndarray:
 
 
 class Bars:
-    """Bars of this run: printed one by one, and an exit code."""
+    """The bars of this run, printed one by one, and an exit code."""
 
     def __init__(self) -> None:
         self.missed = 0

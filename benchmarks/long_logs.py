@@ -1,4 +1,4 @@
-"""Long logs of a test rig's six channels, written block by block: what reading by parts is measured on."""
+"""Long logs with six channels, written block by block, to measure reading by parts."""
 
 import json
 import struct
@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
-HZ, BLOCK = 100, 250_000  # rows that are made at a time
+HZ, BLOCK = 100, 250_000  # rows written at a time
 NAMES = [f"gyro_{axis} [rad/s]" for axis in "xyz"] + [f"acc_{axis} [m/s^2]" for axis in "xyz"]
 
 
@@ -22,7 +22,7 @@ def rows(start: int, count: int) -> dict[str, np.ndarray]:
 
 
 def blocks() -> Iterator[tuple[int, dict[str, np.ndarray]]]:
-    """Rows without end, and the number of the first of each block."""
+    """Endless blocks of rows, with the number of each block's first row."""
     start = 0
     while True:
         yield start, rows(start, BLOCK)
@@ -55,8 +55,8 @@ def mcap(path: Path, size: int) -> Path:
         for start, columns in blocks():
             for k, row in enumerate(zip(*(columns[name].tolist() for name in NAMES), strict=True), start):
                 ns = 1_700_000_000 * 10**9 + k * 10**9 // HZ
-                said = {"gyro": dict(zip("xyz", row[:3], strict=True)), "acc": dict(zip("xyz", row[3:], strict=True))}
-                writer.add_message(topic, ns, json.dumps(said).encode(), ns)
+                fields = {"gyro": dict(zip("xyz", row[:3], strict=True)), "acc": dict(zip("xyz", row[3:], strict=True))}
+                writer.add_message(topic, ns, json.dumps(fields).encode(), ns)
             if file.tell() >= size:
                 break
         writer.finish()
@@ -64,7 +64,7 @@ def mcap(path: Path, size: int) -> Path:
 
 
 def binary(path: Path, size: int, head: bytes, record: np.dtype, fill: Callable[[np.ndarray], None]) -> Path:
-    """A head, and a record a row, which has `us` and `v` beside what `fill` puts in."""
+    """A head, and one record for each row with `us`, `v` and the fields that `fill` sets."""
     with path.open("wb") as file:
         file.write(head)
         for start, columns in blocks():
@@ -122,7 +122,7 @@ def dataflash_text(path: Path, size: int) -> Path:
 
 
 def tlog(path: Path, size: int) -> Path:
-    """The packets of one block again and again: their time stands before them, outside what their checksum covers."""
+    """The packets of one block, repeated: the time is before each packet and not covered by its checksum."""
     link, columns = mav.MAVLink(None, 1, 1), rows(0, BLOCK // 10)
     numbers = np.round(1000 * np.column_stack([columns[name] for name in (*NAMES[3:], *NAMES[:3])])).astype(int)
     packets = [

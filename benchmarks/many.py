@@ -1,4 +1,4 @@
-"""What bench_gpu.py does to many at once, all of it simulated: faulty runs through three monitors, and a training."""
+"""The simulated work of bench_gpu.py: many faulty runs through three monitors, and many trainings at once."""
 
 from collections.abc import Callable
 from functools import partial
@@ -28,14 +28,14 @@ LENGTH, BATCHES, BATCH, CELLS, RATE = 30, 10, 64, (16, 16), 1e-3
 
 
 class Work(NamedTuple):
-    """`run`, compiled, of what all share and of what each has for itself along a first axis: `own` of so many."""
+    """`run`, compiled, of the shared data and of the data of each run (first axis); `own(N)` gives these for N runs."""
 
     name: str
     run: Callable[[Any, Any], Any]
     shared: Any
     own: Callable[[int], Any]
     sizes: tuple[int, ...]
-    agree: float  # bar: greatest difference, relative to the greatest number told
+    agree: float  # bar: largest difference, relative to the largest output
 
 
 def kept(report: Report) -> tuple[jax.Array, jax.Array]:
@@ -49,7 +49,7 @@ def judged(shared: tuple[Monitor, MonitorState, Sample], value: jax.Array) -> tu
 
 
 def replays(name: str, monitor: Monitor, log: sf.Log, last: int, sigma: float, step: float) -> Work:
-    """The last rows of a log, in each run with noise of its own, and with a step on one channel from the middle on."""
+    """The last rows of a log; each run has its own noise, and a step on one channel from the middle on."""
     rows, cut = samples(log.time, log.value, log.fresh, log.block), len(log) - last
     before, after = (jax.tree.map(lambda x, part=part: x[part], rows) for part in (slice(cut), slice(cut, None)))
     start = jax.jit(partial(replay, keep=kept))(monitor, monitor.init(), before)[0]
@@ -70,7 +70,7 @@ def trained(examples: OnDevice, own: tuple[Any, jax.Array]) -> jax.Array:
 
 
 def networks() -> Work:
-    """LSTMs of paper A, an epoch of ten batches each, in an order of its own from weights of its own."""
+    """LSTMs of Min et al. 2021, one epoch of ten batches each, with their own order and initial weights."""
     windows = BATCHES * BATCH
     rows = np.tanh(np.cumsum(np.random.default_rng(0).standard_normal((windows + LENGTH, 8)), axis=0) / 50)
     first, rows = jnp.arange(windows, dtype=jnp.int32), jnp.asarray(rows, jnp.float32)

@@ -1,4 +1,4 @@
-"""The GNSS/INS filter as one would write it in NumPy, for bench_navigation.py: the same arithmetic, loops in Python."""
+"""The GNSS/INS filter written in plain NumPy, for bench_navigation.py: the same arithmetic, with loops in Python."""
 
 from typing import Any
 
@@ -35,7 +35,7 @@ def rotation(angle: np.ndarray) -> np.ndarray:
 
 
 def stretch(nav: Any, own: Any, gyro: Any, force: Any, dt: Any) -> tuple[Any, np.ndarray, float]:
-    """Navigation after some rows, the transition over them, and how long they are."""
+    """Navigation after some rows, the transition matrix over them, and their duration."""
     c, v, r = nav
     pull = gravity(r)
     way_f, way_c, long = np.zeros(3), np.zeros((3, 3)), 0.0
@@ -62,7 +62,7 @@ def stretch(nav: Any, own: Any, gyro: Any, force: Any, dt: Any) -> tuple[Any, np
 
 
 def lines(r: np.ndarray, place: np.ndarray, clock: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Expected pseudoranges, their rows, their variances."""
+    """Expected pseudoranges, their rows of H, and their variances."""
     long = distance(r[None], place)
     sight = turned(place, long / LIGHT_M_S) - r
     sight = sight / np.sqrt((sight**2).sum(axis=1))[:, None]
@@ -75,7 +75,7 @@ def lines(r: np.ndarray, place: np.ndarray, clock: float) -> tuple[np.ndarray, n
 
 
 def left_out(z: np.ndarray, cov: np.ndarray, limit: float) -> np.ndarray:
-    """Whose innovation is too large, the largest first; and who is not taken though it stays."""
+    """Satellites excluded for too large innovations, largest first; and those not used although not excluded."""
     size = np.abs(z) / np.sqrt(np.diag(cov))
     out = np.zeros(len(z), bool)
     for _ in range(MOST):
@@ -87,7 +87,7 @@ def left_out(z: np.ndarray, cov: np.ndarray, limit: float) -> np.ndarray:
 
 
 def navigate(belief: Any, block: Any, value: np.ndarray, limit: float) -> tuple[np.ndarray, np.ndarray]:
-    """Innovations (E, S) [m] of all epochs from this belief on, and who was left out."""
+    """Innovations (E, S) [m] of all epochs from this state on, and the excluded satellites."""
     nav, p = tuple(belief.nav), belief.cov
     own = [belief.own.gyro, belief.own.force, float(belief.own.clock), float(belief.own.drift)]
     per = -(-block.dt.shape[1] // PARTS)

@@ -1,4 +1,4 @@
-"""The real logs that the studies run on: never part of the package, found through SENSORFAULT_DATA."""
+"""The real logs of the studies. They are not part of the package; SENSORFAULT_DATA says where they are."""
 
 import os
 from pathlib import Path
@@ -7,12 +7,12 @@ from sensorfault.logs.table import LogError
 
 
 def real(folder: str) -> Path:
-    """A folder of the real data, as `road/dresden_50hz`.
+    """A folder of the real data, for example `road/dresden_50hz`.
 
     Raises:
-        LogError: it is not there.
+        LogError: the folder does not exist.
     """
     home = Path(os.environ.get("SENSORFAULT_DATA", "../shared/data"))
     if not (home / folder).exists():
-        raise LogError(f"{home / folder}: this study needs these real logs; set SENSORFAULT_DATA to where they lie.")
+        raise LogError(f"{home / folder}: this study needs these real logs; set SENSORFAULT_DATA to their folder.")
     return home / folder

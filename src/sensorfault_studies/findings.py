@@ -1,4 +1,4 @@
-"""What a study says: numbers that a script can check, figures, and sentences for what numbers do not say."""
+"""The result of a study: numbers that a script can check, figures, and remarks."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -12,8 +12,8 @@ SOURCES = ("real", "injected", "simulated")  # injected: real logs with injected
 class Row:
     """One number of a study.
 
-    `condition`: what else was fixed, words joined by spaces. `magnitude`: SI, or channel sigmas with fault `short`, or
-    seconds with `jam`. `spread`: standard deviation over `seeds` seeds. `paper`: what the paper prints for it.
+    `condition`: other settings, words joined by spaces. `magnitude`: SI, or channel sigmas with fault `spike`, or
+    seconds with `frozen`. `spread`: standard deviation over `seeds` seeds. `paper`: the paper's number.
     """
 
     experiment: str
@@ -30,13 +30,13 @@ class Row:
     paper: float | None = None
 
     def as_dict(self) -> Json:
-        """For JSON; the keys are the fields."""
+        """For JSON; the keys are the names of the fields."""
         return asdict(self)
 
 
 @dataclass(frozen=True)
 class Figure:
-    """Plotly JSON (`data`, `layout`) under a title; `name` is the file's stem, `caption` says what to see."""
+    """Plotly JSON (`data`, `layout`) with a title; `name`: stem of the file, `caption`: what the figure shows."""
 
     name: str
     title: str
@@ -46,7 +46,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Findings:
-    """The findings of a study or of one of its experiments."""
+    """The results of a study or of one of its experiments."""
 
     rows: tuple[Row, ...]
     figures: tuple[Figure, ...] = ()
@@ -58,8 +58,8 @@ class Findings:
 
 @dataclass(frozen=True)
 class Effort:
-    """How much work a study may do: number of seeds, `quick` for a look, and whom to tell of the progress (0 to 1)."""
+    """How much work a study may do: number of seeds, `quick` for a short run, and a callback for progress (0 to 1)."""
 
     seeds: int = 5
     quick: bool = False
-    tell: Callable[[str, float], None] = lambda doing, share: None
+    progress: Callable[[str, float], None] = lambda doing, share: None

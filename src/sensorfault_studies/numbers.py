@@ -1,4 +1,4 @@
-"""One value a seed of every number, until they become rows."""
+"""Collects one value for each seed of every number, and makes rows of them."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from sensorfault_studies.findings import Row
 
 
 class Key(NamedTuple):
-    """What a number is of; see Row."""
+    """The key of a number; see Row."""
 
     condition: str
     method: str
@@ -21,7 +21,7 @@ class Key(NamedTuple):
 
 @dataclass
 class Numbers:
-    """Of one experiment on one kind of data."""
+    """The numbers of one experiment on one kind of data."""
 
     experiment: str
     data: str
@@ -32,23 +32,23 @@ class Numbers:
         self,
         condition: str,
         method: str,
-        result: Mapping[str, float],
+        measured: Mapping[str, float],
         fault: str | None = None,
         size: float | None = None,
     ) -> None:
-        """One more seed's numbers, by metric."""
-        for metric, value in result.items():
+        """Add the numbers of one more seed, by metric."""
+        for metric, value in measured.items():
             self.values.setdefault(Key(condition, method, fault, size, metric), []).append(float(value))
 
     def mean(
         self, condition: str, method: str, metric: str, fault: str | None = None, size: float | None = None
     ) -> float:
-        """Over the seeds; NaN for what was not measured."""
+        """Mean over the seeds; NaN if not measured."""
         found = self.values.get(Key(condition, method, fault, size, metric), [])
         return float(np.mean(found)) if found else float("nan")
 
     def rows(self, paper: Mapping[str, float] = {}) -> Iterator[Row]:
-        """Mean and spread; `paper`: what the paper prints for a metric."""
+        """Mean and spread as rows; `paper`: metric -> the paper's number."""
         for (condition, method, fault, size, metric), values in self.values.items():
             spread = float(np.std(values, ddof=1)) if len(values) > 1 else None
             yield Row(

@@ -1,4 +1,4 @@
-"""The page of a study: its tables, figures and remarks in one HTML file that opens anywhere, offline."""
+"""The page of a study: its tables, figures and remarks in one HTML file that works offline."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from sensorfault_studies.tables import PAPER, Cell, Table, grouped, tables, thin
 def page(title: str, experiments: Mapping[str, str], findings: Findings, facts: str) -> str:
     """The page as text.
 
-    A figure whose name begins with an experiment's code stands below its tables; the others stand at the end.
+    A figure whose name begins with an experiment's code is placed below its tables; the other figures come last.
 
     Args:
         title: of the study.
@@ -49,7 +49,7 @@ def page(title: str, experiments: Mapping[str, str], findings: Findings, facts: 
 
 
 def _home(figure: Figure, codes: Sequence[str]) -> str | None:
-    """The experiment whose name a figure's begins with; the longest name, if several do."""
+    """The experiment whose code begins the figure's name; the longest code if several match."""
     own = (code for code in codes if figure.name.lower().startswith(code.lower()))
     return max(own, key=len, default=None)
 

@@ -1,4 +1,4 @@
-"""A study's rows as tables for people: methods down, magnitudes or metrics across, the paper's beside ours."""
+"""A study's rows as readable tables: methods down, magnitudes or metrics across, the paper's numbers beside ours."""
 
 import math
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
@@ -11,7 +11,7 @@ from sensorfault_studies.findings import Row
 SOURCES = {"real": "real logs", "injected": "real logs with injected faults", "simulated": "simulated"}
 PAPER = "paper"
 NONE = "–"
-_WIDE = 10  # more magnitudes than so many go down instead of across
+_WIDE = 10  # more magnitudes than this are listed down instead of across
 _SCALE = {"spike": "σ", "frozen": "s", "missing": "s"}
 
 Key = TypeVar("Key", bound=Hashable)
@@ -19,7 +19,7 @@ Key = TypeVar("Key", bound=Hashable)
 
 @dataclass(frozen=True)
 class Cell:
-    """One number as text, and its spread over the seeds; empty where there is none."""
+    """A number as text, and its spread over the seeds; empty if there is none."""
 
     value: str = ""
     spread: str = ""
@@ -27,9 +27,9 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """`labels`: heads of the columns that say what a row is, `heads`: of those with numbers; `source`: of its data.
+    """`labels`: heads of the columns that describe a row; `heads`: of those with numbers; `source`: of the data.
 
-    Where the paper prints a number, a column PAPER stands beside ours.
+    If the paper prints a number, a column PAPER follows ours.
     """
 
     title: str
@@ -40,7 +40,7 @@ class Table:
 
 
 def tables(rows: Sequence[Row]) -> tuple[Table, ...]:
-    """Sweeps over magnitudes first, then what was measured once; one table for each fault and source."""
+    """First sweeps over magnitudes, then single measurements; one table for each fault and source."""
     sweeps, single = [], []
     for (fault, source), group in grouped(rows, lambda row: (row.fault, row.source)):
         sizes = {row.magnitude for row in group} - {None}
@@ -48,7 +48,7 @@ def tables(rows: Sequence[Row]) -> tuple[Table, ...]:
         if across:
             sweeps.append(_sweep(fault or "", source, across))
         rest = [row for row in group if row not in across]
-        single += [_single(fault, source, part) for part in _apart(rest)]
+        single += [_single(fault, source, part) for part in _without_common_metric(rest)]
     return (*sweeps, *single)
 
 
@@ -64,15 +64,15 @@ def _sweep(fault: str, source: str, rows: Sequence[Row]) -> Table:
     return _table(title, source, rows, "metric", lambda row: row.metric, lambda row: written(row.magnitude), heads)
 
 
-def _apart(rows: Sequence[Row]) -> list[list[Row]]:
-    """Rows in parts that have no metric in common, so that no table is mostly empty."""
+def _without_common_metric(rows: Sequence[Row]) -> list[list[Row]]:
+    """Split rows into groups without a common metric, so that no table is mostly empty."""
     parts: list[tuple[set[str], list[Row]]] = []
     for _, line in grouped(rows, lambda row: (row.data, row.method, row.condition)):
-        metrics, together = {row.metric for row in line}, line
+        metrics, group = {row.metric for row in line}, line
         for part in [part for part in parts if part[0] & metrics]:
-            metrics, together = part[0] | metrics, part[1] + together
+            metrics, group = part[0] | metrics, part[1] + group
             parts.remove(part)
-        parts.append((metrics, together))
+        parts.append((metrics, group))
     return [part for _, part in parts]
 
 
@@ -100,19 +100,19 @@ def _table(
     shown = [i for i in range(4) if order[i] != [""]]
     papers = {across(row) for row in rows if row.paper is not None}
     columns = [(head, paper) for head in heads for paper in ((False, True) if head in papers else (False,))]
-    result = []
+    body = []
     for key, line in lines:
         at = {across(row): row for row in line}
         cells = tuple(Cell() if head not in at else (printed if paper else ours)(at[head]) for head, paper in columns)
-        result.append((tuple(key[i] for i in shown), cells))
+        body.append((tuple(key[i] for i in shown), cells))
     labels = tuple(names[i] for i in shown)
     return Table(
-        title, SOURCES[source], labels, tuple(PAPER if paper else head for head, paper in columns), tuple(result)
+        title, SOURCES[source], labels, tuple(PAPER if paper else head for head, paper in columns), tuple(body)
     )
 
 
 def ours(row: Row) -> Cell:
-    """A row's number; as many digits as its spread deserves."""
+    """A row's number, with as many digits as its spread allows."""
     if not math.isfinite(row.value):
         return Cell(NONE)
     digits = _digits(row.value)
@@ -131,12 +131,12 @@ def printed(row: Row) -> Cell:
 
 
 def _decimals(paper: float | None) -> int:
-    """Digits behind the point that the paper prints; ours get no fewer where it is a small number."""
+    """Decimals that the paper prints; ours get at least as many where the number is small."""
     return len(f"{paper:g}".partition(".")[2]) if paper is not None and math.isfinite(paper) else 0
 
 
 def _digits(value: float) -> int:
-    """Digits behind the point: none from a hundred on, one from ten on, else two; of less than 0.01 two that count."""
+    """Decimals: none from 100 on, one from 10 on, else two; below 0.01 two significant digits."""
     size = abs(value)
     if size >= 10:
         return 0 if size >= 100 else 1
@@ -144,12 +144,12 @@ def _digits(value: float) -> int:
 
 
 def written(number: float | None) -> str:
-    """A magnitude as one would write it."""
+    """A magnitude as text."""
     return "" if number is None else f"{number:g}"
 
 
 def grouped(rows: Iterable[Row], key: Callable[[Row], Key]) -> list[tuple[Key, list[Row]]]:
-    """Rows with the same key together, in the order in which the keys first came."""
+    """Rows grouped by key, in the order in which the keys first occur."""
     found: dict[Key, list[Row]] = {}
     for row in rows:
         found.setdefault(key(row), []).append(row)
@@ -162,7 +162,7 @@ def titled(experiments: Mapping[str, str], code: str) -> str:
 
 
 def thinned(labels: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
-    """Labels without what only repeats the line above; the last stands in every line."""
+    """Labels without those that repeat the line above; the last label is kept in every line."""
     shown = list(labels[:1])
     for before, line in pairwise(labels):
         changed = next((i for i, part in enumerate(line) if part != before[i]), len(line) - 1)

@@ -22,7 +22,7 @@ def asked(install: Install) -> list[Effort]:
 
     def study(effort: Effort) -> Findings:
         efforts.append(effort)
-        effort.tell("halfway there", 0.5)
+        effort.progress("halfway there", 0.5)
         fit = Row("X2", "a drive", "real", "", "good", None, None, "fit_s", math.nan)
         rate = Row("X2", "made up", "simulated", "", "good", None, None, "far", 0.125)
         figure = Figure("x1-roc", "A curve", "Look at it.", {"data": [{"x": [0, 1], "y": [0, 1]}], "layout": {}})

@@ -101,5 +101,5 @@ def test_faults_never_meet() -> None:
 @pytest.mark.parametrize("length_s", [5.0, 11.0])
 def test_too_short_a_log(length_s: float) -> None:
     log = fitted.unseen().between(end_s=fitted.LEARN_S + length_s)
-    with pytest.raises(LogError, match=r"needs 12; give a longer part, or shorter faults\.$"):
+    with pytest.raises(LogError, match=r"needs 12 s; give a longer part, or shorter faults\.$"):
         campaign(fitted.model(), log, duration_s=2.0)

@@ -52,7 +52,7 @@ def test_saved_and_loaded_it_says_the_same(tmp_path: Path) -> None:
 
 def test_other_logs_are_refused() -> None:
     for one, other in ((AS_PRINTED, PHYSICAL), (PHYSICAL, AS_PRINTED)):  # which differ in a5, by a likely misprint
-        with pytest.raises(LogError, match="not of the arm that arm-kalman knows"):
+        with pytest.raises(LogError, match="not of the arm of arm-kalman"):
             arm_kalman("arm-kalman", run(one, seed=3), other.constants)
     log = run(seed=1)
     with pytest.raises(LogError, match="1 channels called torque"):

@@ -72,7 +72,7 @@ def test_a_drive_that_never_moves() -> None:
 
 
 def test_a_wheelbase_of_nothing() -> None:
-    with pytest.raises(LogError, match="wheelbase is 0 m"):
+    with pytest.raises(LogError, match="wheelbase_m is 0; it must be positive"):
         bicycle_kalman("bicycle-kalman", replace(log(), wheelbase_m=0.0))
     text = "[vehicle]\nname = 'car'\nwheelbase_m = 0.0\n[file.log]\n[sensor.a.channel]\nx = { column = 'x' }\n"
     with pytest.raises(LogError, match=r"wheelbase_m = 0 is none"):

@@ -98,11 +98,11 @@ def broken(log: Log) -> Log:
     [
         (
             lambda log: log.select(["gnss.altitude", "gnss.down"]),
-            "has no height of a barometer; slope compares the two",
+            "has no height of a barometer, but slope compares both",
         ),
         (lambda log: log.select(["barometer.altitude"]), "has no height of a satellite receiver"),
-        (lambda log: log.between(end_s=150.0), "lasts 150 s, slope needs 195 s"),
-        (broken, "is never watched for 130 s without a break"),
+        (lambda log: log.between(end_s=150.0), "lasts 150 s, but slope needs 195 s"),
+        (broken, "has no stretch of 130 s without a gap"),
         (lambda log: replace(log, fresh=log.fresh & False), "has 0 beats of 1 s"),
     ],
 )

@@ -93,7 +93,7 @@ def _without(log: Log, *paths: str) -> Log:
     ("log", "words"),
     [
         (lambda: _without(missions.healthy().log, "leader1.range", "leader2.range"), "no sensor with a range"),
-        (lambda: _without(missions.healthy().log, "gps.latitude"), "no position of a sensor without a range"),
+        (lambda: _without(missions.healthy().log, "gps.latitude"), "no position of the vehicle itself"),
         (lambda: sail(120.0, 1).log, "a leader with"),
     ],
 )

@@ -67,8 +67,8 @@ def test_a_page_leaves_out_satellites_that_never_rose() -> None:
     epochs = how.frame(log())
     epochs.value[:9, [2, 2 + len(names)]] = np.nan  # one that rises later stays
     found = detect(model("innovation", log(), how, epochs, calibrated, ("w",), {}), epochs)
-    assert len(found.log.sensors) == len(found.calibrated.log.sensors) + 1
-    assert "G30" not in [sensor.name for sensor in found.calibrated.log.sensors]
-    assert found.calibrated.channel.shape == found.calibrated.repaired.shape == found.calibrated.log.value.shape
-    assert found.calibrated.sensor.shape[1] == len(found.calibrated.log.sensors)
-    np.testing.assert_array_equal(found.calibrated.sensor[-5:, 3], FAULT)
+    assert len(found.log.sensors) == len(found.received.log.sensors) + 1
+    assert "G30" not in [sensor.name for sensor in found.received.log.sensors]
+    assert found.received.channel.shape == found.received.repaired.shape == found.received.log.value.shape
+    assert found.received.sensor.shape[1] == len(found.received.log.sensors)
+    np.testing.assert_array_equal(found.received.sensor[-5:, 3], FAULT)

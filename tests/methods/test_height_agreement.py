@@ -182,9 +182,9 @@ def test_a_vertical_speed_is_named_and_believed_again() -> None:
 
 
 def test_what_cannot_be_compared_is_said() -> None:
-    with pytest.raises(LogError, match="has 1 channels that tell its height"):
+    with pytest.raises(LogError, match="has 1 channels of its height"):
         build(log(GNSS).between(end_s=FITTED_S), 0, SILENT)
-    with pytest.raises(LogError, match="30 s long, height-agreement needs 120 s"):
+    with pytest.raises(LogError, match="30 s long, but height-agreement needs 120 s"):
         build(log(GNSS, BARO).between(end_s=30.0), 0, SILENT)
 
 

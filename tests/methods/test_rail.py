@@ -53,8 +53,8 @@ def test_a_satellite_that_lies_is_named_and_nobody_else() -> None:
 
 def test_what_it_needs_is_said_in_one_sentence() -> None:
     log = small(ride(30.0, 3, imu_hz=10).log)
-    with pytest.raises(LogError, match=r"has 30 epochs with 4 satellites, train needs 60; give a longer log\.$"):
+    with pytest.raises(LogError, match=r"has 30 epochs with 4 satellites, but rail needs 60; give a longer log\.$"):
         RECIPE.build(log, 0, Session())
     empty = replace(log, value=np.where(True, np.nan, log.value), fresh=log.fresh & False)
-    assert "train needs" in RECIPE.lacks(log)
+    assert "rail needs" in RECIPE.lacks(log)
     assert RECIPE.lacks(empty)

@@ -196,7 +196,7 @@ def test_the_page_has_tables_figures_and_remarks() -> None:
     figures = (Figure("a1-roc", "ROC", "Upper left is better.", plot), Figure("other", "Else", "See.", plot))
     seen = shown(Findings((replace(ONE, data="else"), *sweep()), figures, ("A remark.",)))
     text = " ".join(seen.words)
-    for words in ("Min et al. 2021", "A1 Shorts", "commit 123 & more", "0.84", "±0.01", "0.90", "ROC", "A remark."):
+    for words in ("Min et al. 2021", "A1 Spikes", "commit 123 & more", "0.84", "±0.01", "0.90", "ROC", "A remark."):
         assert words in text
     assert text.index("Upper left") < text.index("Else")
     assert all(f"{row.value:.0f}" in text for row in sweep())
@@ -255,14 +255,14 @@ def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.Mon
 
     def experiment(code: str) -> Callable[[Effort], Findings]:
         def run(effort: Effort) -> Findings:
-            effort.tell("going", 0.5)
+            effort.progress("going", 0.5)
             return Findings((replace(ONE, experiment=code, seeds=effort.seeds),), (Figure("f", "", "", {}),), (code,))
 
         return run
 
     assert list(min2021.EXPERIMENTS) == list(min2021.STUDY.experiments) == ["A1", "A2", "A3", "A4"]
     monkeypatch.setattr(min2021, "EXPERIMENTS", {code: experiment(code) for code in ("A1", "A2")})
-    findings = min2021.STUDY.run(Effort(7, tell=lambda doing, share: result.append((doing, share))))
+    findings = min2021.STUDY.run(Effort(7, progress=lambda doing, share: result.append((doing, share))))
     assert [(row.experiment, row.seeds) for row in findings.rows] == [("A1", 7), ("A2", 7)]
     assert [figure.name for figure in findings.figures] == ["a1-f", "a2-f"]
     assert findings.remarks == ("A1", "A2")

@@ -1,4 +1,4 @@
-"""A2 on the real drives: what EXPERIMENTS asks of the motion deficit."""
+"""A2 on the real drives: the expected results of the motion deficit."""
 
 from functools import cache
 from pathlib import Path
@@ -11,7 +11,7 @@ from sensorfault.methods.catalog import METHODS
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
-from sensorfault_studies.min2021.jam_scores import at_random, at_rate, counted, flag_all, said
+from sensorfault_studies.min2021.jam_scores import at_random, at_rate, counted, flag_all, scored
 from sensorfault_studies.min2021.jamming import LEARN, RECOVERY_S, Drive, jammed
 
 FOLDERS = {"dresden_50hz": "road/dresden_50hz", "drive0708": "road/gnss_imu_drive0708"}
@@ -41,7 +41,7 @@ def test_jams_are_found_and_the_untouched_rest_is_quiet(name: str) -> None:
     for length_s, least in LEAST[name].items():
         for seed in SEEDS:
             copy = jammed(drive, length_s, seed)
-            one = said(model, copy.log, drive.fixes, drive.position, lambda test: not test.startswith("slip"))
+            one = scored(model, copy.log, drive.fixes, drive.position, lambda test: not test.startswith("slip"))
             assert counted(copy.frozen[copy.scored], one.fault[copy.scored])["f1"] >= least
 
 
@@ -71,7 +71,7 @@ def test_a_receiver_that_freezes_as_a_whole_is_seen_by_the_inertial_unit() -> No
     drive, model = fitted("drive0708")
     assert drive.roles.velocity is not None
     copy = jammed(drive, 10.0, 0, ("latitude", "longitude", "north", "east"))
-    one = said(model, copy.log, drive.fixes, drive.roles.velocity, lambda test: test.startswith("slip"))
+    one = scored(model, copy.log, drive.fixes, drive.roles.velocity, lambda test: test.startswith("slip"))
     time = drive.rest.time[drive.fixes]
     seen = [one.fault[(time >= onset) & (time < onset + 10.0)].any() for onset in copy.onsets]
     assert np.mean(seen) >= 0.7

@@ -14,7 +14,7 @@ from sensorfault.training.multistep import Trained
 from sensorfault_studies.findings import Effort
 from sensorfault_studies.multistep import drift as study
 from sensorfault_studies.multistep.contenders import KINEMATIC, NETWORK, Contender, kinematic, network, watch
-from sensorfault_studies.multistep.drift import LOUD, drifts
+from sensorfault_studies.multistep.drift import OFF, drifts
 from sensorfault_studies.multistep.figures import of_drift
 from sensorfault_studies.multistep.flights import flight
 from sensorfault_studies.multistep.flown import Flown, Ramps, count
@@ -77,7 +77,7 @@ def test_alarms_are_counted_from_the_onset() -> None:
 def test_a_ramp_grows_in_the_residual_until_it_fills_the_window() -> None:
     """Open loop: what N steps see of a ramp is its slope times their length."""
     ramps = Ramps.on(cut().judge, (0.5,))
-    score = watch(climbing().monitors(np.full(2, LOUD)), ramps.logs).score
+    score = watch(climbing().monitors(np.full(2, OFF)), ramps.logs).score
     late = slice(int(ramps.onset[1]) + 50, None)
     plain = [kinematic_residual(ramps.height[i], n)[late] for i in (0, 1) for n in (1, 12)]
     np.testing.assert_allclose(score[:, 0, late], np.abs(plain[:2]), atol=1e-9)
@@ -112,7 +112,7 @@ def test_what_is_told_of_a_flight(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "network", stand_in)
     monkeypatch.setattr(study, "QUICK_LONG", study.QUICK_STEPS)
     shares: list[float] = []
-    (result,) = drifts(Effort(seeds=1, quick=True, tell=lambda doing, share: shares.append(share)))
+    (result,) = drifts(Effort(seeds=1, quick=True, progress=lambda doing, share: shares.append(share)))
     assert shares == sorted(shares)
     rows = list(rows_of(result))
     assert len({(r.condition, r.method, r.fault, r.magnitude, r.metric, r.source) for r in rows}) == len(rows)
@@ -144,7 +144,7 @@ def test_longer_roll_outs_find_more_on_the_real_flight(real_data: Path, monkeypa
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
     own = Flown.of(flight("proto"))
     contender = kinematic(own, (12, 25))
-    loud = contender.monitors(np.full(2, LOUD))
+    loud = contender.monitors(np.full(2, OFF))
     learned = watch(loud, [own.learn]).score[:, 0]
     ramps = Ramps.on(own.judge)
     score = watch(loud, ramps.logs).score

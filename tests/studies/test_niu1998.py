@@ -124,7 +124,7 @@ def test_what_is_told_of_the_papers_run(monkeypatch: pytest.MonkeyPatch) -> None
     rivals = (Rival(NETWORK, "", build), Rival(NETWORK, SCRATCH, build))
     monkeypatch.setattr(study, "of_two_links", lambda arm, limits: rivals)
     shares: list[float] = []
-    result = drifts(Effort(seeds=1, quick=True, tell=lambda doing, share: shares.append(share)))
+    result = drifts(Effort(seeds=1, quick=True, progress=lambda doing, share: shares.append(share)))
     rows = list(result.rows())
     assert len({(r.condition, r.method, r.fault, r.magnitude, r.metric) for r in rows}) == len(rows)
     assert shares == sorted(shares)

@@ -1,4 +1,4 @@
-"""A3: the pieces on simulated numbers; on the real drives, what EXPERIMENTS asks for."""
+"""A3: the parts on simulated numbers; on the real drives, the expected results."""
 
 from functools import cache
 from pathlib import Path
@@ -10,7 +10,7 @@ from scipy import stats
 from sensorfault_studies.findings import Row
 from sensorfault_studies.min2021 import normality as study
 from sensorfault_studies.min2021.normality_faults import biases, motions
-from sensorfault_studies.min2021.normality_sizes import jarque_bera, made, sizes, windows
+from sensorfault_studies.min2021.normality_sizes import jarque_bera, simulated, sizes, windows
 
 
 def number(rows: list[Row], **wanted: object) -> float:
@@ -32,7 +32,7 @@ def test_windows() -> None:
 
 def test_on_numbers_made_for_it() -> None:
     """Must: AR(.9) Gaussian at least .35 undecimated, at most .08 decimated x10; blind to bias and scale."""
-    rows = list(made(2))
+    rows = list(simulated(2))
     assert number(rows, condition="ar0.9", metric="far") >= 0.35
     assert number(rows, condition="ar0.9 x10", metric="far") <= 0.08
     size = number(rows, condition="whole-window", fault=None)

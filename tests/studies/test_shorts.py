@@ -1,4 +1,4 @@
-"""A1: how the spikes are made, counted and told; on the real drives, what EXPERIMENTS asks for."""
+"""A1: how the spikes are injected, counted and reported; on the real drives, the expected results."""
 
 from functools import cache
 from pathlib import Path
@@ -116,7 +116,7 @@ def quick_findings() -> Findings:
     names = ("elm-autoencoder", "bp-autoencoder", "pca", "linear-conditioning")
     pairs = [(rival, plain(rival.method)) for rival in candidates(quick=True)]
     assert tuple(rival.method for rival, _ in pairs) == names
-    return study.told_of("simulated", pairs, (3.0, 5.0))
+    return study.results("simulated", pairs, (3.0, 5.0))
 
 
 def test_what_is_told() -> None:
@@ -143,10 +143,10 @@ def test_what_is_told() -> None:
         "chance",
     ]
     assert len(found.remarks) == 1
-    assert "leads by" in found.remarks[0]
+    assert "is better by" in found.remarks[0]
 
 
-# What EXPERIMENTS asks for. The whole study (five seeds, all sizes) takes minutes: run 'sensorfault reproduce min2021'.
+# The expected results. The whole study (five seeds, all sizes) takes minutes: run 'sensorfault reproduce min2021'.
 
 ELM = {"dresden_50hz": (0.67, 0.82, 0.89, 0.96, 1.0), "gnss_imu_drive0708": (0.57, 0.68, 0.80, 0.95, 1.0)}
 CONDITIONING = {"dresden_50hz": (0.82, 0.96, 0.99), "gnss_imu_drive0708": (0.79, 0.93, 0.97)}
@@ -191,7 +191,7 @@ def test_backpropagation_copies_better_and_so_sees_less(real_data: Path) -> None
 def test_a_quick_look(real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(real_data))
     result: list[float] = []
-    found = study.shorts(Effort(quick=True, tell=lambda doing, share: result.append(share)))
+    found = study.shorts(Effort(quick=True, progress=lambda doing, share: result.append(share)))
     assert {row.data for row in found.rows} == {"dresden_50hz", "drive0708"}
     assert {row.magnitude for row in found.rows} == {None, 3.0, 5.0}
     assert len(found.figures) == len(found.remarks) == 2

@@ -1,4 +1,4 @@
-"""Slow drifts of two real flights: what EXPERIMENTS asks for, and that the short way round is the whole monitor's."""
+"""Slow drifts of two real flights: the expected results, and that the short computation equals the whole monitor's."""
 
 from dataclasses import replace
 from functools import cache

@@ -69,7 +69,7 @@ def test_the_page_says_what_the_numbers_say() -> None:
     assert {(row.method, row.magnitude, row.value) for row in delays} >= {("slope", 0.1, 23.0), ("ramp-glr", 1.0, 3.0)}
     assert {row.source for row in rows} == {"real", "injected"}
     said = " ".join(remarks([result]))
-    assert "slope finds 0.1, 0.3 and 1 m/s after 23 / 8 / 3 s with 0 false events" in said
+    assert "slope detects 0.1, 0.3 and 1 m/s after 23 / 8 / 3 s with 0 false events" in said
     assert "windows of 60, 130 s" in said
     drawn = figures(result)
     assert [figure.name for figure in drawn] == [f"d_slow_{what}_proto" for what in ("delay", "score", "window")]

@@ -12,15 +12,15 @@ from sensorfault.methods.gnss.gnss_ins import monitor as watching
 from sensorfault.stages.statistic.normalised import Normalised
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault_studies.wang2023.campaign import SETTLED, Flown, case, false_alarms, flown
-from sensorfault_studies.wang2023.contenders import unwatched
+from sensorfault_studies.wang2023.contenders import without_exclusion
 from sensorfault_studies.wang2023.drive import pseudoranges
 from sensorfault_studies.wang2023.matching import limited, matched
-from sensorfault_studies.wang2023.trials import LASTS, ONSETS, Lie, outcome, trials
+from sensorfault_studies.wang2023.trials import LASTS, ONSETS, SatelliteFault, outcome, trials
 
 
 def test_every_satellite_lies_from_every_onset() -> None:
     error = np.zeros((2, 413, 3))
-    every = trials(error, Lie("ramp", 0.5))
+    every = trials(error, SatelliteFault("ramp", 0.5))
     assert every.shape == (2 * len(ONSETS) * 3, 413, 3)
     for m, wrong in enumerate(every):
         onset, satellite = ONSETS[m // 3 % len(ONSETS)], m % 3
@@ -56,7 +56,7 @@ def _data(real_data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("_data")
 def test_on_gaussian_noise_innovations_are_as_large_as_the_filter_says() -> None:
     of = case()
-    result = flown(unwatched(of, 1.0), of, pseudoranges("gaussian", range(70, 82)))
+    result = flown(without_exclusion(of, 1.0), of, pseudoranges("gaussian", range(70, 82)))
     each = result.normalised[:, SETTLED:].std(axis=(1, 2))
     assert (each > 0.9).all()
     assert (each < 1.1).all()
@@ -73,6 +73,6 @@ def test_a_limit_is_set_by_the_rate_that_it_achieves_and_finds_a_large_step_at_o
     assert 0.01 < reached < 0.04
     assert 2.5 < limit.low <= limit.limit <= limit.high < 6.0
     assert false_alarms(flown(limited(monitor, np.inf), of, pseudoranges("heavy", [1]))) == 0.0
-    (result,) = outcome(flown(monitor, of, trials(pseudoranges("heavy", [2]), Lie("step", 30.0))), 1)
+    (result,) = outcome(flown(monitor, of, trials(pseudoranges("heavy", [2]), SatelliteFault("step", 30.0))), 1)
     assert result["detection_rate"] > 0.97
     assert result["delay_s"] < 1.0

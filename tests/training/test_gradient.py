@@ -150,6 +150,6 @@ def test_a_foreign_checkpoint_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("rows", [4, 5, 30, 60])
 def test_too_few_windows(rows: int) -> None:
-    with pytest.raises(LogError, match="too few to learn from") as raised:
+    with pytest.raises(LogError, match="are too few: ") as raised:
         fitted(data=windows(rows))
     assert str(raised.value).endswith("give a longer log.")

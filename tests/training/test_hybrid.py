@@ -97,7 +97,7 @@ def test_the_step_rule_is_jangs() -> None:
     sizes = []
     for change in [-1, -1, -1, -1, -1, -1, -1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, 1]:
         errors.append(errors[-1] + 0.1 * change)
-        rule.hear(errors)
+        rule.adapt(errors)
         sizes.append(round(rule.size, 6))
     # four decreases at the 4th and the 8th change; two times up and down at the 12th and the 16th
     assert sizes == [1.0] * 3 + [1.1] * 4 + [1.21] * 4 + [1.089] * 4 + [0.9801] * 3
@@ -233,7 +233,7 @@ def test_five_rows_or_one_that_is_not_finite_are_refused() -> None:
         ((features[:5], target[:5]), "5 measurements"),
         ((bad, target), "row 7"),
         ((features, unknown), "row 9"),
-        ((-features, target), "below zero"),
+        ((-features, target), "is negative"),
     ):
         with pytest.raises(LogError, match=words) as raised:
             fit_anfis(*case)

@@ -1,15 +1,15 @@
-"""The limit that healthy runs pass at a rate, and how well so many runs tell it."""
+"""The limit for a designed false alarm rate, and its confidence interval from the number of healthy runs."""
 
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-DRAWS, INNER = 1000, 0.90  # bootstrap samples of runs, and the share of them within the interval
+DRAWS, INNER = 1000, 0.90  # bootstrap samples, and the confidence of the interval
 
 
 class Calibrated(NamedTuple):
-    """`low` to `high`: where the limit would lie in nine of ten sets of as many runs."""
+    """A limit and its 90 % interval over sets of as many runs."""
 
     limit: float
     low: float
@@ -17,12 +17,12 @@ class Calibrated(NamedTuple):
 
 
 def calibrated(scores: list[Float[np.ndarray, " T"]], false_alarms: float, seed: int) -> Calibrated:
-    """The limit that a share `false_alarms` of the healthy epochs passes; its interval from resampled whole runs.
+    """The limit that a share `false_alarms` of the healthy epochs exceeds; its interval by resampling whole runs.
 
-    `scores`: of each run the largest score of each epoch, NaN where nothing was tested: such an epoch does not count.
-    Alarms cluster, so epochs of one run say little more than one of them: the bootstrap draws runs (Davison & Hinkley
-    1997, section 2.4, on clusters), not epochs. Without a tested epoch all are inf; where a rate is so small that the
-    runs hold not one such epoch, the limit is the largest score seen and says no more than that.
+    `scores`: for each run the largest score of each epoch; NaN where nothing was tested, such epochs do not count.
+    Alarms come in clusters, so the bootstrap draws whole runs, not epochs (Davison & Hinkley 1997, section 2.4).
+    Without a tested epoch limit and interval are inf. If the rate is below one epoch of all runs, the limit is the
+    largest score.
     """
     known = [run[np.isfinite(run)] for run in scores]
     pooled = np.concatenate([*known, np.empty(0)])
@@ -39,7 +39,7 @@ def calibrated(scores: list[Float[np.ndarray, " T"]], false_alarms: float, seed:
 
 
 def _weighted(ranked: Float[np.ndarray, " n"], times: Float[np.ndarray, " n"], share: float) -> float:
-    """The smallest value that no more than this share lies above; values in falling order, each so many times."""
+    """Smallest value with at most this share above it. `ranked`: values in falling order; `times`: their weights."""
     above = np.cumsum(times)
     first = np.searchsorted(above, share * above[-1], side="right")
     return float(ranked[min(first, len(ranked) - 1)])

@@ -1,9 +1,10 @@
-"""Faults in what was given as healthy: plain ones are named and left out, so that they are not learned.
+"""Screening of training data: gross faults in data given as healthy are listed and removed, so they are not learned.
 
-Conservative on purpose. A sensor fault begins and ends within one sample and on one sensor; a bump shakes them all. So
-looked for are steps from one measurement to the next that stand far out of the noise around them while the other
-sensors are calm: two opposite ones make a spike or an offset, one that stays makes an offset to the nearer end. And
-runs of exact repeats on a channel that otherwise hardly repeats itself. Drifts, scale and noise are not looked for.
+Conservative on purpose. A sensor fault starts and ends within one sample and on one sensor; a bump shakes all sensors.
+The screening looks for steps between two measurements that are far above the noise around them while the other sensors
+are calm. Two opposite steps are a spike or an offset; a single step that stays is an offset to the nearer end of the
+log. It also looks for runs of exact repeats on a channel that otherwise hardly repeats. It does not look for drift,
+scale or noise faults.
 """
 
 from dataclasses import asdict, dataclass
@@ -16,15 +17,15 @@ from sensorfault.calibration.extremes import tail_limit
 from sensorfault.logs.table import Log
 
 LEAST_ROWS = 200
-AROUND = 25  # rows in a block of which the usual step is taken
-FROZEN_S = 0.5  # shorter repeats are not named
-RESTS, RESTING = 5, 0.25  # a channel with more long runs, or a larger share of its rows in them, rests by its nature
+AROUND = 25  # rows of a block; the median step of a block measures the noise
+FROZEN_S = 0.5  # shorter runs of repeats are ignored [s]
+RESTS, RESTING = 5, 0.25  # a channel with more long runs, or a larger share of rows in them, is often at rest
 ALIKE = 0.5  # two steps are a pair if they differ by less than this share of the larger
 
 
 @dataclass(frozen=True)
 class Suspect:
-    """A stretch of one channel that looks faulty: from its first struck row to its last [s]; `reason` in words."""
+    """A stretch of one channel that looks faulty, from first to last removed row [s]; `reason`: kind of fault."""
 
     start_s: float
     end_s: float
@@ -37,24 +38,24 @@ class Suspect:
 
 
 def leave_out(log: Log) -> tuple[Log, tuple[Suspect, ...]]:
-    """The log without the rows that look faulty, and what was seen there; the same log if there are none."""
+    """The log without the rows that look faulty, and the suspect stretches; the same log if there are none."""
     columns = [i for i, channel in enumerate(log.channels) if channel.watch and _moves(log, i)]
     rows = np.flatnonzero((log.fresh & np.isfinite(log.value))[:, columns].all(axis=1))
     if not columns or len(rows) < LEAST_ROWS:
         return log, ()
-    struck = np.zeros(len(log), bool)
+    excluded = np.zeros(len(log), bool)
     found = []
     for column, (first, end), reason in _spans(log, columns, rows):
         span = slice(rows[first], rows[end - 1] + 1)
-        struck[span] = True
+        excluded[span] = True
         times = log.time[span]
         found.append(Suspect(float(times[0]), float(times[-1]), log.channels[column].path, reason))
     found.sort(key=lambda suspect: (suspect.start_s, suspect.channel))
-    return (log.without(np.flatnonzero(struck)) if found else log), tuple(found)
+    return (log.without(np.flatnonzero(excluded)) if found else log), tuple(found)
 
 
 def _moves(log: Log, column: int) -> bool:
-    """Whether the channel comes with most ticks and is not constant."""
+    """Whether the channel has a value in most ticks and is not constant."""
     there = log.fresh[:, column] & np.isfinite(log.value[:, column])
     return bool(there.mean() >= 0.5) and bool(np.ptp(log.value[there, column]) > 0)
 
@@ -67,24 +68,24 @@ def _spans(log: Log, columns: list[int], rows: Int[np.ndarray, " N"]) -> list[Sp
     period = float(np.median(np.diff(time)))
     step = np.diff(x, axis=0)
     sensors = np.array([log.channels[i].sensor for i in columns])
-    strange = isolation(step, sensors)
+    isolated = isolation(step, sensors)
     found: list[Span] = []
     for k, column in enumerate(columns):
         frozen = _frozen(x[:, k], max(round(FROZEN_S / period), 4))
         found += [(column, run, "frozen") for run in frozen]
-        limit = tail_limit(strange[:, k], len(columns))
+        limit = tail_limit(isolated[:, k], len(columns))
         steps = {
             int(at): float(step[at, k])
-            for at in np.flatnonzero(strange[:, k] > limit / 2)
+            for at in np.flatnonzero(isolated[:, k] > limit / 2)
             if not any(first - 1 <= at <= end for first, end in frozen)
         }
-        certain = set(np.flatnonzero(strange[:, k] > limit).tolist())
+        certain = set(np.flatnonzero(isolated[:, k] > limit).tolist())
         found += [(column, span, reason) for span, reason in _offsets(steps, certain, x[:, k])]
     return found
 
 
 def isolation(step: Float[np.ndarray, "N C"], sensors: np.ndarray) -> Float[np.ndarray, "N C"]:
-    """Size of each step over the usual one around it, and over the same measure of the other sensors' steps."""
+    """Size of each step relative to the usual step around it, divided by the same measure of the other sensors."""
     size = np.abs(step)
     usual = _usual(size)
     overall = np.median(size, axis=0)
@@ -101,7 +102,7 @@ def isolation(step: Float[np.ndarray, "N C"], sensors: np.ndarray) -> Float[np.n
 
 
 def _usual(size: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
-    """Median step of the block that a row is in or of a neighbouring one, whichever is largest."""
+    """Median step of each row's block or of a neighbouring block, whichever is largest."""
     blocks = max(len(size) // AROUND, 1)
     parts = np.array_split(size, blocks)
     median = np.array([np.median(part, axis=0) for part in parts])
@@ -114,7 +115,7 @@ def _usual(size: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
 def _offsets(
     steps: dict[int, float], certain: set[int], x: Float[np.ndarray, " N"]
 ) -> list[tuple[tuple[int, int], str]]:
-    """Spikes, offsets between two opposite steps, steps that stay; a step at `at` leads from row at to row at + 1."""
+    """Spikes, offsets between two opposite steps, and steps that stay; step `at` is from row at to row at + 1."""
     found: list[tuple[tuple[int, int], str]] = []
     left = dict(steps)
     for at in sorted(steps):
@@ -131,27 +132,27 @@ def _offsets(
             found.append(((at + 1, back + 1), "offset"))
             del stays[at], stays[back]
     for at in sorted(stays.keys() & certain):
-        if not _stays(x, at, stays[at], len(x)):  # it ended where nobody saw it
+        if not _stays(x, at, stays[at], len(x)):  # its end was not seen
             continue
         found.append(((at + 1, len(x)) if at >= len(x) / 2 else (0, at + 1), "offset"))
     return found
 
 
 def _opposite(one: float, other: float) -> bool:
-    """Whether one step takes back the other."""
+    """Whether one step cancels the other."""
     return one * other < 0 and abs(one + other) < ALIKE * max(abs(one), abs(other))
 
 
 def _stays(x: Float[np.ndarray, " N"], at: int, size: float, near: int = AROUND) -> bool:
-    """Whether the level of the `near` rows before and of those after differs by about the step."""
+    """Whether the median of the `near` rows after the step differs from that before by about the step."""
     before, after = x[max(at + 1 - near, 0) : at + 1], x[at + 1 : at + 1 + near]
     return abs(float(np.median(after) - np.median(before)) - size) < ALIKE * abs(size)
 
 
 def _frozen(x: Float[np.ndarray, " N"], least: int) -> list[tuple[int, int]]:
-    """Runs of exact repeats too long for chance, rows [first, end); none for a channel that rests now and then.
+    """Runs of exact repeats too long for chance, rows [first, end); none for a channel that is at rest now and then.
 
-    A wheel at rest reads exactly 0, a command stays where it was put.
+    A wheel at rest reads exactly 0, and a command keeps its value.
     """
     changed = np.concatenate([[0], np.flatnonzero(np.diff(x) != 0) + 1, [len(x)]])
     length = np.diff(changed)
@@ -160,7 +161,7 @@ def _frozen(x: Float[np.ndarray, " N"], least: int) -> list[tuple[int, int]]:
     if rests:
         return []
     short = length[~long]
-    # Of repeats independent of chance p, a run of n comes about N p^n times.
+    # If repeats are independent with probability p, about N p^n runs of length n occur.
     p = ((short - 1).sum() + 3) / max(short.sum(), 1)
     chance = np.log(1e-3 / len(x)) / np.log(min(p, 0.999))
     enough = max(chance, 4.0 * short.max(initial=1))

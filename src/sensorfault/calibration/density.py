@@ -1,9 +1,9 @@
-"""Gaussian kernel density of healthy scores, and the score that it passes at a rate."""
+"""Gaussian kernel density of healthy scores, and the limit that it gives for a false alarm rate."""
 
 import numpy as np
 from jaxtyping import Float
 
-TURNS = 60  # halvings of the interval that holds the quantile
+TURNS = 60  # bisections of the interval that contains the quantile
 
 
 def silverman(scores: Float[np.ndarray, " n"]) -> float:
@@ -12,10 +12,10 @@ def silverman(scores: Float[np.ndarray, " n"]) -> float:
 
 
 def density_limit(scores: Float[np.ndarray, " n"], false_alarms: float) -> float:
-    """The score above which the kernel density of the healthy ones holds this share; NaN are left out.
+    """The score with a share `false_alarms` of the healthy kernel density above it; NaN are left out.
 
-    As Wang et al. 2023 set the limit of a local outlier factor. The density takes scores for independent and smears its
-    tail by h: on other data the share can be several times as large, so say what it was. inf without two scores.
+    Wang et al. 2023 set the limit of the local outlier factor in this way. The density assumes independent scores and
+    smooths the tail by h: on other data the rate can be several times as large. inf for fewer than two scores.
     """
     from scipy.special import ndtr
 

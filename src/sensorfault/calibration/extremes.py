@@ -1,18 +1,19 @@
-"""How far out health alone may lie: extremes that one contaminated row does not ruin."""
+"""Robust extremes of healthy data: a few contaminated rows do not spoil them."""
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-LEAST, SHARE, MOST = 20, 0.003, 0.05  # of the sizes, those too far out to have a say: faults may be among them
-BODY = 5  # times as many lie beyond the point from which the tail is measured
-EXPECTED = 1e-2  # healthy sizes beyond the limit that a whole log should hold
+# number, share and largest share of the top sizes that are ignored as possible faults
+LEAST, SHARE, MOST = 20, 0.003, 0.05
+BODY = 5  # the tail is fitted from the quantile with so many times as many sizes above it
+EXPECTED = 1e-2  # expected number of healthy sizes above the limit in a whole log
 
 
 def tail_limit(size: Float[np.ndarray, " N"], tests: int = 1) -> float:
-    """The value that, of so many healthy sizes (none negative), any would exceed in one log of a hundred.
+    """The value that some of the N healthy sizes (none negative) exceed in one of a hundred logs.
 
-    The tail is taken to fall off as a power between two of its quantiles (Hill 1975) and drawn out from there: noise
-    and vibration are lighter than that and stay below. `tests`: how many such limits share the allowance.
+    The tail is extrapolated as a power law through two quantiles (Hill 1975). Noise and vibration have lighter tails
+    and stay below. `tests`: number of limits that share the allowance.
     """
     beyond = min(max(SHARE, LEAST / len(size)), MOST)
     body, tail = np.quantile(size, (1 - BODY * beyond, 1 - beyond))
@@ -24,7 +25,7 @@ def tail_limit(size: Float[np.ndarray, " N"], tests: int = 1) -> float:
 
 
 def explained(value: Float[np.ndarray, "N C"]) -> Bool[np.ndarray, "N C"]:
-    """Which entries lie no farther from their channel's median than its other values lead to expect."""
+    """Which entries are no outliers: not farther from their channel's median than the tail of the others allows."""
     away = np.abs(value - np.median(value, axis=0))
     limit = np.array([tail_limit(channel) for channel in away.T])
     near: Bool[np.ndarray, "N C"] = away <= limit
@@ -32,5 +33,5 @@ def explained(value: Float[np.ndarray, "N C"]) -> Bool[np.ndarray, "N C"]:
 
 
 def explained_max(score: Float[np.ndarray, " N"]) -> float:
-    """The largest of the scores (none negative) that the others lead to expect."""
+    """The largest score (none negative) that is no outlier."""
     return float(score[score <= tail_limit(score)].max())

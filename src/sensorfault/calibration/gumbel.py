@@ -1,4 +1,4 @@
-"""The limit of a test from the usual largest scores of healthy blocks of time; a few blocks with faults do no harm."""
+"""The limit of a test from the block maxima of healthy scores; robust against faults in a few blocks."""
 
 import numpy as np
 from jaxtyping import Float
@@ -10,11 +10,11 @@ MEDIAN, UPPER = -np.log(np.log(2.0)), -np.log(-np.log(0.75))  # reduced Gumbel v
 def gumbel_limit(
     score: Float[np.ndarray, "T K"], time: Float[np.ndarray, " T"], per_hour: float, block_s: float
 ) -> Float[np.ndarray, " K"]:
-    """The score that a healthy drive passes `per_hour` times an hour, one for each test; NaN where nothing was tested.
+    """The limit of each test that a healthy drive exceeds `per_hour` times an hour; scores are NaN where not tested.
 
-    Alarms come in clusters, so what counts is the largest score of each block of `block_s`. Its distribution is taken
-    for Gumbel's and fitted to the median and the upper quartile of the blocks, so that faults in less than a quarter of
-    the training time are not learned; never below the median of the largest. Without LEAST_BLOCKS of them: +inf.
+    Alarms come in clusters, so the largest score of each block of `block_s` counts. A Gumbel distribution is fitted to
+    the median and the upper quartile of these maxima, so faults in less than a quarter of the training time are not
+    learned. The limit is never below the median of the maxima, and +inf with fewer than LEAST_BLOCKS blocks.
     """
     block = ((time - time[0]) // block_s).astype(int)
     limit = np.full(score.shape[1], np.inf)

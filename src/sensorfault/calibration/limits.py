@@ -3,17 +3,18 @@
 import numpy as np
 from jaxtyping import Float
 
-REPEATS_PER_HOUR = 1e-3  # false alarms allowed to the whole exact-repeat test of a channel
+REPEATS_PER_HOUR = 1e-3  # false alarms an hour of the exact-repeat test of one channel
 LEAST_RUN = 4.0
-FEW = 50  # so many blocks tell half of a tail's shape
+FEW = 50  # with so many blocks the estimated tail shape has weight one half
 
 
 def repeat_limit(runs: Float[np.ndarray, "T C"], period_s: float) -> Float[np.ndarray, " C"]:
-    """Longest run of exact repeats that health still explains, for each channel.
+    """Longest run of exact repeats that is still healthy, for each channel.
 
-    With repeats independent of chance p, a run longer than n begins p^n / period times a second; solve for n at
-    REPEATS_PER_HOUR, p taken at its upper 95 % bound where few were seen (rule of three). A channel whose repeats come
-    in long runs (a wheel at rest) is given twice its longest healthy run. `runs` is NaN where nothing was tested.
+    If repeats are independent with probability p, a run longer than n begins p^n / period times a second; this is
+    solved for n at REPEATS_PER_HOUR, with the upper 95 % bound of p where few repeats were seen (rule of three). A
+    channel with long runs of repeats (a wheel at rest) gets twice its longest healthy run. `runs` is NaN where nothing
+    was tested.
     """
     tested = np.isfinite(runs)
     count = np.maximum(tested.sum(axis=0), 1)
@@ -28,12 +29,12 @@ def repeat_limit(runs: Float[np.ndarray, "T C"], period_s: float) -> Float[np.nd
 def tail_limit(
     scores: Float[np.ndarray, "T K"], period_s: float, per_hour: float, block_s: float = 5.0
 ) -> Float[np.ndarray, " K"]:
-    """Limit that health passes `per_hour` times an hour, for each test; at least its largest healthy score.
+    """Limit that healthy data exceed `per_hour` times an hour, for each test; at least the largest healthy score.
 
-    Rows are `period_s` apart, NaN where nothing was tested. Alarms cluster, so blocks are counted, not rows: the maxima
-    of blocks of `block_s`, of which the upper half (but 10 at least) is taken for the tail, a generalised Pareto law by
-    probability-weighted moments (Hosking & Wallis 1987), its shape kept within 0 (exponential) to 0.5 and shrunk to 0
-    where few blocks tell it. A test without any score gets +inf.
+    Rows are `period_s` apart, NaN where nothing was tested. Alarms come in clusters, so the maxima of blocks of
+    `block_s` count, not rows. A generalised Pareto distribution is fitted to the upper half of the maxima (at least 10)
+    by probability-weighted moments (Hosking & Wallis 1987). Its shape is kept between 0 (exponential) and 0.5, and
+    shrunk towards 0 where there are few blocks. A test without any score gets +inf.
     """
     rows = max(round(block_s / period_s), 1)
     limit = np.full(scores.shape[1], np.inf)
@@ -41,7 +42,7 @@ def tail_limit(
         tested = score[np.isfinite(score)]
         if not tested.size:
             continue
-        length = max(round(rows * tested.size / len(score)), 1)  # blocks are cut out of what was tested
+        length = max(round(rows * tested.size / len(score)), 1)  # blocks contain tested rows only
         blocks = -(-tested.size // length)
         padded = np.concatenate([tested, np.full(blocks * length - tested.size, -np.inf)])
         top = np.sort(padded.reshape(blocks, length).max(axis=1))[::-1]
@@ -58,7 +59,7 @@ def tail_limit(
 
 
 def _pareto(over: Float[np.ndarray, " n"]) -> tuple[float, float]:
-    """Scale and shape of a generalised Pareto law of excesses, largest first (Hosking & Wallis 1987, section 4)."""
+    """Scale and shape of a generalised Pareto law for excesses, largest first (Hosking & Wallis 1987, section 4)."""
     n = len(over)
     # a0 = E x, a1 = E x (1 - F(x)); plotting positions (i - 0.35) / n from the smallest
     rest = (np.arange(n) + 0.35) / n

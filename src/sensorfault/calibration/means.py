@@ -1,4 +1,4 @@
-"""What healthy innovations make of the windows of a bank: their means, and how wide those spread."""
+"""Means of healthy innovations over the windows of a bank, and their spread."""
 
 from dataclasses import replace
 from typing import Any
@@ -12,11 +12,11 @@ from sensorfault.core.types import Residual
 from sensorfault.numerics.blocks import enough
 from sensorfault.stages.statistic.means import Means
 
-SHARE, NORMAL = 0.99, 2.5758  # of the healthy means within a limit, and where that limit is if they are normal
+SHARE, NORMAL = 0.99, 2.5758  # share of the healthy means within a limit, and that limit for the normal distribution
 
 
 def windows(length_s: tuple[float, ...], spacing_s: float, gap_s: float, channels: int) -> Means:
-    """Windows of these lengths, not yet fitted: their spread is 1. Epochs are `spacing_s` apart or closer."""
+    """Windows of these lengths, not yet fitted (spread 1). Epochs are `spacing_s` apart or closer."""
     return Means(
         jnp.asarray(length_s),
         jnp.ones(len(length_s)),
@@ -28,7 +28,7 @@ def windows(length_s: tuple[float, ...], spacing_s: float, gap_s: float, channel
 
 
 def mean_tape(means: Means, normalised: Float[np.ndarray, "T C"], period_s: float) -> Float[np.ndarray, "T C W"]:
-    """The means after every epoch of a healthy run, `period_s` apart; NaN where nothing was tested.
+    """The means after every epoch of a healthy run; epochs are `period_s` apart; NaN where nothing was tested.
 
     `normalised`: z_i / √S_ii, NaN where nothing was tested.
     """
@@ -41,9 +41,9 @@ def _over(means: Means, time: Float[Array, " T"], normalised: Float[Array, "T C"
     unit, none = jnp.eye(normalised.shape[1]), jnp.zeros(normalised.shape[1], bool)
 
     def one(past: Any, row: tuple[Array, Array]) -> tuple[Any, Float[Array, "C W"]]:
-        now, result = row
-        valid = jnp.isfinite(result)
-        value = jnp.where(valid, result, 0.0)
+        now, normal = row
+        valid = jnp.isfinite(normal)
+        value = jnp.where(valid, normal, 0.0)
         mean, past = means.over(past, Residual(now, value, unit, value, value, value, valid, none))
         return past, jnp.where(valid[:, None], mean, jnp.nan)
 
@@ -51,10 +51,10 @@ def _over(means: Means, time: Float[Array, " T"], normalised: Float[Array, "T C"
 
 
 def fit_spread(means: Means, tape: Float[np.ndarray, "M W"]) -> Means:
-    """With spreads by which all windows pass a limit equally often, however heavy their tails and long their memory.
+    """With spreads such that all windows exceed a common limit equally often, whatever their tails and their memory.
 
-    `tape`: healthy means of all channels and runs, NaN where nothing was tested. A spread is that of the normal law
-    with the same two-sided 99 % limit.
+    `tape`: healthy means of all channels and runs, NaN where nothing was tested. A spread is the standard deviation of
+    the normal distribution with the same two-sided 99 % limit.
     """
     spread = np.nanquantile(np.abs(tape), SHARE, axis=0) / NORMAL
     return replace(means, spread=means.spread * jnp.asarray(spread))

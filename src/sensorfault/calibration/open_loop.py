@@ -1,4 +1,4 @@
-"""Tapes: what healthy data make of a monitor whose limits are off."""
+"""Open-loop scores: a monitor with its limits off, replayed over healthy data."""
 
 from typing import Any
 
@@ -40,19 +40,19 @@ def _scores(monitor: Monitor) -> list[Float[Array, " K"]]:
 
 
 def open_loop_scores(uncalibrated: Monitor, log: Log) -> tuple[Float[np.ndarray, "T K"], ...]:
-    """The scores of every branch over a log, NaN where a test had nothing to test."""
+    """The scores of every branch over a log; NaN where nothing was tested."""
     return tuple(np.asarray(score) for score in replay_log(uncalibrated, log).scores)
 
 
 def extra_tape(residual: Stage[Any, Sample, Residual, Any], log: Log) -> Any:
-    """`extra` of a residual generator's every sample on a healthy log, all of it trusted."""
+    """`extra` of a residual generator for every sample of a healthy log; all samples are trusted."""
     channels = len(log.channels)
     silent = Branch(Norm(jnp.ones(channels)), Fixed(jnp.full(1, jnp.inf)))
     monitor = Monitor(residual, (silent,), Exceed(), Drop(), jnp.zeros(channels), tuple(range(channels)))
     rows = samples(log.time, log.value, log.fresh)
-    return jax.tree.map(np.asarray, _told(monitor, monitor.init(), rows))
+    return jax.tree.map(np.asarray, _extra(monitor, monitor.init(), rows))
 
 
 @jax.jit
-def _told(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
+def _extra(monitor: Monitor, state: MonitorState, rows: Sample) -> Any:
     return replay(monitor, state, rows, lambda report: report.residual.extra)[1]

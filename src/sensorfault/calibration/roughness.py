@@ -1,4 +1,4 @@
-"""How rough a healthy drive was: the range of a score's running root mean square."""
+"""How rough a healthy drive was: the range of a score's running RMS."""
 
 import numpy as np
 from jaxtyping import Float
@@ -7,7 +7,7 @@ from jaxtyping import Float
 def roughness(
     scores: Float[np.ndarray, "T K"], memory: float
 ) -> tuple[Float[np.ndarray, " K"], Float[np.ndarray, " K"]]:
-    """Median and maximum over a drive of the root mean square over `memory` samples; ones for a test without scores."""
+    """Median and maximum over a drive of the RMS over `memory` samples; ones for a test without scores."""
     middle, most = np.ones(scores.shape[1]), np.ones(scores.shape[1])
     for k, score in enumerate(scores.T):
         square = score[np.isfinite(score)] ** 2

@@ -1,4 +1,4 @@
-"""The linear map of training extremes to [-1, 1]."""
+"""Linear scaling of the training range to [-1, 1]."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -21,7 +21,7 @@ class Scaling:
 
     @classmethod
     def of(cls, value: Float[np.ndarray, "N C"], watched: Bool[np.ndarray, " C"]) -> "Scaling":
-        """From the extremes of healthy rows (SI, finite); a constant channel keeps its unit."""
+        """From the extremes of healthy rows (SI, finite); a constant channel is not scaled."""
         low, high = value.min(axis=0), value.max(axis=0)
         half = (high - low) / 2
         return cls(np.where(watched, (low + high) / 2, 0.0), np.where(watched & (half > 0), half, 1.0), watched)
@@ -39,8 +39,8 @@ class Scaling:
         activation: str,
         residual: Float[np.ndarray, "N C"],
     ) -> Reconstruction:
-        """The fitted residual generator; `residual`: what it leaves of the healthy rows, still scaled to [-1, 1]."""
-        # covariance in SI; a channel that is not watched gets unit variance, since a covariance is never singular
+        """The fitted residual generator; `residual`: of the healthy rows, scaled to [-1, 1]."""
+        # covariance in SI; an unwatched channel gets unit variance, so that the covariance is not singular
         cov = np.cov(residual.T) * np.outer(self.half, self.half) + np.diag(np.where(self.watched, 0.0, 1.0))
         return Reconstruction(
             weights=jnp.asarray(weights),

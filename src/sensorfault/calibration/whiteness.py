@@ -1,4 +1,4 @@
-"""How to take samples of a healthy signal so that they are about independent."""
+"""How to thin out a healthy signal so that its samples are about independent."""
 
 from dataclasses import dataclass
 
@@ -6,16 +6,16 @@ import numpy as np
 from jaxtyping import Float, Int
 
 EVERY = (1, 2, 3, 5, 10, 20, 50)
-WHITE = 0.2  # a smaller autocorrelation is let pass
-FEW = 20  # samples a window should hold at least
+WHITE = 0.2  # a smaller autocorrelation is accepted
+FEW = 20  # samples that a window should have at least
 
 
 @dataclass(frozen=True)
 class Whiteness:
-    """For each of W signals: take each `every`-th value, less `memory` times the one before over √(1 - memory²).
+    """For each of W signals: take every `every`-th value x, and of these (x - `memory` x_before) / √(1 - memory²).
 
-    `sigma` is the standard deviation of what is taken (between its 16 and 84 % quantiles), `least` how many make a
-    window worth judging.
+    `sigma`: standard deviation of the result (from its 16 and 84 % quantiles). `least`: samples needed to test a
+    window.
     """
 
     every: Int[np.ndarray, " W"]
@@ -25,9 +25,9 @@ class Whiteness:
 
 
 def whiten(signals: Float[np.ndarray, "T W"], time: Float[np.ndarray, " T"], window_s: float) -> Whiteness:
-    """Of healthy signals, NaN where there is no value: decimate until white, or until FEW a window are left.
+    """Decimate healthy signals until they are white, or until FEW samples of a window are left; NaN: no value.
 
-    What correlation is left is taken out by an autoregression of first order.
+    The remaining correlation is removed by a first-order autoregression.
     """
     width = signals.shape[1]
     every, memory, sigma, least = np.ones(width, int), np.zeros(width), np.ones(width), np.full(width, np.inf)
@@ -41,7 +41,7 @@ def whiten(signals: Float[np.ndarray, "T W"], time: Float[np.ndarray, " T"], win
             if n > 1 and usual / n < FEW:
                 break
             every[k], memory[k] = n, autocorrelation(x[::n])
-            # wild values come in clusters, which makes a window's kurtosis vary even where the mean does not
+            # outliers come in clusters, so a window's kurtosis varies even where its mean does not
             if max(abs(memory[k]), autocorrelation(np.abs(x[::n]))) < WHITE:
                 break
         memory[k] = np.clip(memory[k], -0.9, 0.9)
@@ -54,7 +54,7 @@ def whiten(signals: Float[np.ndarray, "T W"], time: Float[np.ndarray, " T"], win
 
 
 def autocorrelation(x: Float[np.ndarray, " N"]) -> float:
-    """Of first order, of ranks mapped to [-1, 1], so that a few wild values do not decide it."""
+    """First-order autocorrelation of the ranks, so that a few outliers do not decide it."""
     rank = np.argsort(np.argsort(x)) / max(len(x) - 1, 1) * 2 - 1
     power = float((rank**2).sum())
     return float((rank[1:] * rank[:-1]).sum()) / power if power > 0 else 0.0

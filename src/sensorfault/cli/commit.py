@@ -1,4 +1,4 @@
-"""Which version of the code a study ran on."""
+"""The version of the code that a study ran on."""
 
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
@@ -8,10 +8,10 @@ _DESCRIBE = ("git", "describe", "--always", "--abbrev=40", "--exclude=*", "--dir
 
 
 def commit(checkout: Path | None = None) -> str:
-    """The checkout's commit, `-dirty` behind it where files differ from it; without a checkout or git, the version.
+    """The commit of the checkout, with `-dirty` if files differ from it; without a checkout or git, the version.
 
     Args:
-        checkout: by default the one that this file lies in, if it is one.
+        checkout: by default the one that contains this file.
     """
     home = checkout or Path(__file__).parents[3]
     if (home / ".git").exists():

@@ -1,4 +1,4 @@
-"""Many faults into one healthy log: what a fitted model finds of each kind, channel and magnitude."""
+"""Inject many faults into one healthy log and measure which a model detects, by kind, channel and magnitude."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import MISSED, Model
 
 PAUSE_S = 5.0  # between two faults
-MAGNITUDES = {  # of the faults a campaign injects: sigmas, sigmas a second, factor, seconds
+MAGNITUDES = {  # of the injected faults, in the unit of the kind: sigmas, sigmas a second, factor, or seconds
     "spike": (3.0, 10.0, 20.0),
     "offset": (3.0, 10.0, 20.0),
     "drift": (1.0, 3.0),
@@ -31,7 +31,7 @@ MAGNITUDES = {  # of the faults a campaign injects: sigmas, sigmas a second, fac
 
 @dataclass(frozen=True)
 class Campaign:
-    """The table, the untouched run, the isolation counts, and how the joint test ranks samples."""
+    """The recall table, all outcomes, the run without faults, and how well the first test ranks samples."""
 
     cells: tuple[Cell, ...]
     outcomes: tuple[Outcome, ...]
@@ -40,7 +40,7 @@ class Campaign:
     auc_pr: float
 
     def isolation(self) -> dict[str, dict[str, int]]:
-        """How often a fault of one sensor was laid at the door of another: counts[of][named], found faults only."""
+        """Confusion of sensors, detected faults only: counts[faulty sensor][isolated sensor]."""
         counts: dict[str, dict[str, int]] = {}
         for outcome in self.outcomes:
             if outcome.named is not None:
@@ -59,12 +59,12 @@ def campaign(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Campaign:
-    """Inject each kind on each watched channel at each magnitude `repeats` times into a healthy log, and judge.
+    """Inject each kind on each watched channel at each magnitude `repeats` times into a healthy log, and evaluate.
 
-    The log must be one that the model was not fitted on; limits stay as they are.
+    The model must not be fitted on this log; its limits stay as they are.
 
     Raises:
-        LogError: the log is too short for one fault, or there is no such kind of fault.
+        LogError: the log is too short for one fault, the kind is unknown, or the duration is not positive.
         TypeError: something else than a model or a log.
     """
     expect(model, Model, "campaign: model", MODEL)
@@ -72,13 +72,13 @@ def campaign(
     if unknown := [kind for kind in kinds if kind not in MAGNITUDES]:
         raise LogError(f"fault kind '{unknown[0]}' is unknown; take some of {', '.join(MAGNITUDES)}.")
     if not duration_s > 0:
-        raise LogError(f"a fault of {duration_s:g} s is none; give a duration above 0.")
+        raise LogError(f"the fault duration is {duration_s:g} s; give a duration above 0.")
     log = model.take(log)
     at_once = int((log.duration_s - PAUSE_S) / (duration_s + PAUSE_S))
     if at_once < 1:
         raise LogError(
-            f"{log.name} has {log.duration_s:.0f} s, a fault of {duration_s:g} s with pauses needs "
-            f"{duration_s + 2 * PAUSE_S:.0f}; give a longer part, or shorter faults."
+            f"{log.name} has {log.duration_s:.0f} s, but a fault of {duration_s:g} s with pauses needs "
+            f"{duration_s + 2 * PAUSE_S:.0f} s; give a longer part, or shorter faults."
         )
     clean = detect(model, log)
     wanted = list(_wanted(model, kinds, duration_s)) * repeats
@@ -105,13 +105,13 @@ def campaign(
 
 
 def _wanted(model: Model, kinds: Sequence[str], duration_s: float) -> Iterator[Fault]:
-    """Every kind on every watched channel at every magnitude; a miss silences a whole sensor, watched or not."""
+    """Every kind on every watched channel at every magnitude; `missing` silences a whole sensor, watched or not."""
     watched = [channel for channel, watch in zip(model.channels, model.watched, strict=True) if watch]
     for kind in kinds:
         lasting = 0.0 if kind == "spike" else duration_s
         if kind == "missing":
-            received = (sensor for sensor in model.sensors if MISSED * sensor.period_s < lasting)
-            yield from (Fault(kind, sensor.name, None, 0.0, lasting) for sensor in received)
+            noticeable = (sensor for sensor in model.sensors if MISSED * sensor.period_s < lasting)
+            yield from (Fault(kind, sensor.name, None, 0.0, lasting) for sensor in noticeable)
             continue
         for size in MAGNITUDES[kind]:
             for channel in watched:

@@ -14,9 +14,9 @@ from sensorfault.runtime.result import Detection
 class Cell:
     """One row of the recall table: all faults of one kind, channel and magnitude.
 
-    `chance`: share of fault windows of this length in which the same model raises an alarm when nothing is injected.
-    `innocents`: events a fault on healthy channels. `recovery`: median of repaired over measured error, below 1 where
-    the stand-in is better than the faulty value.
+    `recall`: share of the faults that were detected. `chance`: probability of an alarm in an equally long window
+    without a fault. `false_isolations`: events on healthy channels, a fault. `recovery`: median of repaired over
+    measured error, below 1 where the stand-in is better than the faulty value.
     """
 
     kind: str
@@ -35,7 +35,7 @@ class Cell:
 
 
 def tabulate(outcomes: Sequence[Outcome], clean: Detection) -> tuple[Cell, ...]:
-    """Outcomes grouped; `clean` is the same model on the same log with nothing injected."""
+    """Outcomes by kind, magnitude and channel; `clean`: the same model on the same log without faults."""
     groups: dict[tuple[str, float, str], list[Outcome]] = {}
     for outcome in outcomes:
         fault = outcome.fault

@@ -1,4 +1,4 @@
-"""Events against the truth: found, when, on whose account; and the alarms that nothing explains."""
+"""Compare events with the injected faults: which were detected, when, on which channel; and the false alarms."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,17 +13,17 @@ from sensorfault.numerics.poisson import rate_below
 from sensorfault.runtime.model import TOGETHER
 from sensorfault.runtime.result import Detection
 
-GRACE_S = 1.0  # an event that begins so soon after a fault's end is still that fault's
+GRACE_S = 1.0  # an event that begins within this time after a fault's end still belongs to it [s]
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one injected fault.
+    """Result for one injected fault.
 
-    `delay_s`: from onset to the first alarm, NaN if there was none. `sensor_right`, `channel_right`, `kind_right` hold
-    for that first alarm. `innocents`: events in its time on channels that were healthy. `error_before`, `error_after`:
-    root mean square of measured and of repaired minus true values over the fault, in healthy sigmas, NaN where there
-    was nothing to compare.
+    `delay_s`: time from onset to the first alarm, NaN if there was none. `sensor_right`, `channel_right`, `kind_right`
+    are about this first alarm. `false_isolations`: events during the fault on healthy channels. `error_before`,
+    `error_after`: RMS over the fault of measured and of repaired minus true values, in healthy sigmas; NaN where there
+    is nothing to compare.
     """
 
     fault: Fault
@@ -40,7 +40,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Judgement:
-    """Outcomes of all faults, the events that no fault explains, and the hours in which such could happen."""
+    """Outcomes of all faults, the false alarms, and the hours without a fault in which they could happen."""
 
     outcomes: tuple[Outcome, ...]
     false_alarms: tuple[Event, ...]
@@ -58,10 +58,10 @@ class Judgement:
 
 
 def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None) -> Judgement:
-    """Compare what was found with what was injected; `clean`, the log before injection, gives the recovery error.
+    """Compare the events with the injected faults; `clean`, the log before injection, is needed for the recovery error.
 
-    Causal and on events: an event belongs to a fault if it begins between the fault's onset and its end (plus GRACE_S);
-    one that was already going on does not count as finding it. No point adjustment.
+    An event belongs to a fault if it begins between the fault's onset and its end plus GRACE_S; an event that was
+    ongoing at the onset does not count. No point adjustment.
 
     Raises:
         TypeError: something else than a detection, faults or a log.
@@ -79,7 +79,7 @@ def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None
 
 
 def noticed_s(event: Event) -> float:
-    """When an event was first known of: a silence only once it had lasted longer than allowed."""
+    """When an event was first known; for a missing sensor that is when the allowed silence was over."""
     if event.kind == "missing" and event.limit is not None:
         return event.start_s + event.limit
     return event.start_s
@@ -87,7 +87,7 @@ def noticed_s(event: Event) -> float:
 
 def _of(fault: Fault, events: Sequence[Event], tick_s: float) -> list[Event]:
     first, last = fault.start_s - tick_s / 2, fault.end_s + GRACE_S
-    # a silence reaches back to the last word heard, which in a hole of the clock lies before the onset
+    # a missing event starts at the last measurement, which can lie before the onset if the clock has a gap
     mine = (event for event in events if first <= noticed_s(event) and event.start_s <= last)
     return sorted(mine, key=noticed_s)
 
@@ -104,31 +104,31 @@ def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
         found=True,
         delay_s=max(0.0, noticed_s(first) - fault.start_s),
         sensor_right=first.sensor == fault.sensor,
-        channel_right=_guilty(fault, first),
+        channel_right=_channel_right(fault, first),
         kind_right=first.kind == fault.kind,
         named=first,
-        false_isolations=sum(not _guilty(fault, event) for event in mine),
+        false_isolations=sum(not _channel_right(fault, event) for event in mine),
         error_before=before,
         error_after=after,
     )
 
 
-def _guilty(fault: Fault, event: Event) -> bool:
-    """Whether an event accuses the channel that lies."""
+def _channel_right(fault: Fault, event: Event) -> bool:
+    """Whether an event names the faulty channel."""
     accused = [] if event.channel is None else event.channel.split(TOGETHER)
     return event.sensor == fault.sensor and (fault.channel is None or fault.channel in accused)
 
 
 def _errors(fault: Fault, detection: Detection, clean: Log) -> tuple[float, float]:
-    """Measured and repaired minus clean over the fault, root mean square in units of the channel's healthy sigma."""
+    """RMS over the fault of measured and of repaired minus clean values, in units of the channel's healthy sigma."""
     log = detection.log
-    struck = [i for i, c in enumerate(log.channels) if c.sensor == fault.sensor and fault.channel in (None, c.name)]
+    faulty = [i for i, c in enumerate(log.channels) if c.sensor == fault.sensor and fault.channel in (None, c.name)]
     rows = (log.time >= fault.start_s) & (log.time <= fault.end_s)
-    clean = clean.select(log.channels[i].path for i in struck).between(log.time[0], log.time[-1] + log.period_s / 2)
+    clean = clean.select(log.channels[i].path for i in faulty).between(log.time[0], log.time[-1] + log.period_s / 2)
     scale = np.nanstd(clean.value, axis=0)
     scale[scale == 0] = np.nan  # a channel that never moves has no sigma to measure errors in
     before, after = (
-        _rms((value[rows][:, struck] - clean.value[rows]) / scale) for value in (log.value, detection.repaired)
+        _rms((value[rows][:, faulty] - clean.value[rows]) / scale) for value in (log.value, detection.repaired)
     )
     return before, after
 

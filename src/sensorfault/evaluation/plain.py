@@ -1,4 +1,4 @@
-"""Answers that JSON can say."""
+"""Values that JSON can express."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Threshold-free extras: how well a score ranks faulty samples above healthy ones."""
+"""Threshold-free measures: how well a score ranks faulty samples above healthy ones."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 def auc(score: Float[np.ndarray, " N"], faulty: Bool[np.ndarray, " N"]) -> float:
     """Area under the receiver operating characteristic; NaN if one class is empty.
 
-    The Mann-Whitney statistic: the chance that a faulty sample scores above a healthy one, ties counting half.
+    The Mann-Whitney statistic: probability that a faulty sample scores above a healthy one; ties count half.
     """
     positive, negative = int(faulty.sum()), int((~faulty).sum())
     if not positive or not negative:

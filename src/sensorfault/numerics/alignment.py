@@ -1,4 +1,4 @@
-"""From nothing to a navigating filter: a position from one epoch, a velocity from several, the attitude from motion."""
+"""Start of a navigation filter: position from one epoch, velocity from several, attitude from motion."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -8,16 +8,16 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.numerics.ins_error import ACC, CLOCK, GYRO, POS, VEL, upward
 from sensorfault.numerics.strapdown import Navigation, cross, times
 
-UNSEEN, NOWHERE, MOVING, ALIGNED = range(4)  # phases: no satellite yet, no position, no attitude, all of it
+UNSEEN, NOWHERE, MOVING, ALIGNED = range(4)  # phases: no satellite yet, no position, no attitude, complete
 EARTH_M = 6.371e6
-ANYWHERE_M = 1e7  # standard deviation of a position of which nothing is known
-COARSE = 1e6  # by which variances grow meanwhile, so that so wide a covariance keeps its digits
-LEAST = 4  # satellites that tell a position
-FOUND_M = 100.0  # a round of least squares that moves no further has found the position
-SLOW = 3.0  # below this speed a course is no heading [m/s]
-SURE = 0.25  # a course is a heading once it is known so well [rad]
-CANT = 0.07  # how far a vehicle lies off level, standard deviation [rad]
-SLIP = 0.05  # how far it points off its course [rad]
+ANYWHERE_M = 1e7  # standard deviation of an unknown position [m]
+COARSE = 1e6  # process noise in this phase, so that a very large covariance does not lose digits
+LEAST = 4  # satellites needed for a position
+FOUND_M = 100.0  # least squares has converged if a round moves the position by less [m]
+SLOW = 3.0  # below this speed the course is no heading [m/s]
+SURE = 0.25  # the course is used as heading once its standard deviation is below this [rad]
+CANT = 0.07  # standard deviation of a vehicle's roll and pitch [rad]
+SLIP = 0.05  # standard deviation of heading minus course [rad]
 
 
 def spread(states: int, **of: float) -> Float[Array, " n"]:
@@ -35,20 +35,20 @@ def nowhere(states: int) -> Float[Array, "n n"]:
 
 
 def moving(states: int) -> Float[Array, "n n"]:
-    """Covariance with which a filter of position and velocity begins."""
+    """Initial covariance of a filter of position and velocity."""
     return jnp.diag(
         spread(states, psi=0.1, vel=50.0, pos=50.0, gyro=0.0, acc=0.0, clock=50.0, drift=500.0, offsets=1e3)
     )
 
 
 def under(place: Float[Array, "S 3"], there: Bool[Array, " S"]) -> Float[Array, "3"]:
-    """A point of the earth's surface under the middle of the satellites: where the first round begins."""
+    """The point of the earth's surface below the mean of the satellites: start of the first round."""
     middle = jnp.where(there[:, None], place, 0.0).sum(axis=0)
     return EARTH_M * middle / jnp.maximum(jnp.sqrt((middle**2).sum()), 1.0)
 
 
 def course_known(nav: Navigation, cov: Float[Array, "n n"]) -> Bool[Array, ""]:
-    """Whether the velocity tells where the vehicle points."""
+    """Whether the velocity gives the heading of the vehicle."""
     ahead, _, fast = _course(nav)
     return (fast > SLOW) & (_doubt(ahead, nav, cov) < SURE * fast)
 
@@ -56,7 +56,7 @@ def course_known(nav: Navigation, cov: Float[Array, "n n"]) -> Bool[Array, ""]:
 def along_course(
     nav: Navigation, cov: Float[Array, "n n"], gyro_bias: Float[Array, ""], force_bias: Float[Array, ""]
 ) -> tuple[Navigation, Float[Array, "n n"]]:
-    """Level and pointed along the velocity, and the covariance with the doubts of that; it must not go backwards."""
+    """Attitude level and along the velocity, and the covariance of this assumption; the vehicle must not reverse."""
     ahead, up, fast = _course(nav)
     attitude = jnp.stack([ahead, cross(ahead, up), -up], axis=1)  # ahead, right, down
     head = _doubt(ahead, nav, cov) / jnp.maximum(fast, SLOW)
@@ -71,7 +71,7 @@ def along_course(
 
 
 def _course(nav: Navigation) -> tuple[Float[Array, "3"], Float[Array, "3"], Float[Array, ""]]:
-    """Where it goes, up, and how fast on the level [m/s]."""
+    """Unit vectors ahead and up, and the horizontal speed [m/s]."""
     up = upward(nav.position)
     level = nav.velocity - (nav.velocity * up).sum() * up
     fast = jnp.sqrt((level**2).sum())
@@ -79,7 +79,7 @@ def _course(nav: Navigation) -> tuple[Float[Array, "3"], Float[Array, "3"], Floa
 
 
 def _doubt(ahead: Float[Array, "3"], nav: Navigation, cov: Float[Array, "n n"]) -> Float[Array, ""]:
-    """Standard deviation of the velocity across its course, on the level [m/s]."""
+    """Standard deviation of the horizontal velocity across its course [m/s]."""
     aside = cross(ahead, upward(nav.position))
     return jnp.sqrt(jnp.maximum((aside[:, None] * aside[None] * cov[VEL, VEL]).sum(), 0.0))
 

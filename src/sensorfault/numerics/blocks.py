@@ -1,4 +1,4 @@
-"""A window of blocks for each of C channels: K slots, the newest last; values that lie close together share a slot."""
+"""A window of blocks for each of C channels: K slots, the newest last; values close in time share a slot."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -8,11 +8,11 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-EARLY = 0.1  # share of a beat by which a value may come early and still end it: clocks and receivers jitter
+EARLY = 0.1  # share of a beat by which a value may come early and still end it, because of jitter
 
 
 class Blocks(NamedTuple):
-    """Of each slot the number of values, the sum of their weights, their weighted mean, mean time and Σ weight value².
+    """For each slot the number of values, sum of weights, weighted mean, mean time and Σ weight value².
 
     `start`: when the newest slot began [s]. An empty slot is all zeros.
     """
@@ -36,7 +36,7 @@ class Blocks(NamedTuple):
         return self.time[-1]
 
     def kept(self, still: Bool[Array, " C"]) -> "Blocks":
-        """The same window, or none, channel by channel."""
+        """The same window or an empty one, for each channel."""
         return Blocks(*(jnp.where(still if x.ndim == 1 else still[None], x, 0.0) for x in self))
 
     def put(
@@ -47,7 +47,7 @@ class Blocks(NamedTuple):
         time: Float[Array, ""],
         spacing: Float[Array, ""],
     ) -> "Blocks":
-        """With another value where `new`: in a slot of its own once the newest is `spacing` old [s], else in that."""
+        """Add a value where `new`: to a new slot if the newest is at least `spacing` old [s], else to the newest."""
         begins = (self.n[-1] == 0) | (time - self.start >= (1 - EARLY) * spacing)
         shift = new & begins & (self.n[-1] > 0)
         rows = [jnp.where(shift[None], jnp.concatenate([x[1:], jnp.zeros_like(x[:1])]), x) for x in self[:5]]
@@ -66,7 +66,7 @@ class Blocks(NamedTuple):
 
 
 class Window(NamedTuple):
-    """What a test sees of the last `length` seconds: slots with weights (0: empty or too old) and ages.
+    """The last `length` seconds as a test uses them: slots with weights (0: empty or too old) and ages.
 
     `age` counts from the newest slot [s]. `many`: the values. `square`: Σ weight value², over the window.
     """
@@ -99,5 +99,5 @@ def enough(length_s: float, spacing_s: float) -> int:
 
 
 def spacing(length: Float[Array, ""], slots: int) -> Float[Array, ""]:
-    """How far apart slots begin [s] of which so many hold a window of this length."""
+    """Spacing of slot starts [s] such that so many slots cover a window of this length."""
     return length / ((1 - EARLY) * slots - 2)

@@ -1,4 +1,4 @@
-"""Some channels out of all, and rows that move up: without a gather, which costs more in a small loop."""
+"""Select channels and shift rows without a gather, which costs more in a small loop."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -7,10 +7,10 @@ from jaxtyping import Array
 
 
 def picked(each: Array, columns: tuple[int, ...]) -> Array:
-    """These columns out of one number a channel."""
+    """These columns of a vector over channels."""
     return jnp.stack([each[i] for i in columns]) if columns else each[:0]
 
 
 def shifted(rows: Array, newest: Array) -> Array:
-    """The rows without the first, the oldest, and with this one behind the last."""
+    """The rows without the first (oldest), with this one appended."""
     return jnp.concatenate([rows[1:], newest[None]])

@@ -33,7 +33,8 @@ def triangular(wide: Float[Array, "n k"]) -> Float[Array, "n n"]:
     lower = [[jnp.zeros(())] * size for _ in range(size)]
     for i in range(size):
         # L_ii = |a_i|,  L_ji = a_j · a_i / L_ii,  a_j ← a_j - L_ji a_i / L_ii
-        scale = jnp.maximum(jnp.abs(rows[i]).max(), 1e-300)  # taken out before squaring, lest 1e-200 vanish
+        # divided out before squaring, so that 1e-200 does not underflow
+        scale = jnp.maximum(jnp.abs(rows[i]).max(), 1e-300)
         length = scale * jnp.sqrt(((rows[i] / scale) ** 2).sum())
         unit = jnp.where(length > 0, rows[i] / jnp.where(length > 0, length, 1.0), 0.0)
         lower[i][i] = length
@@ -51,7 +52,7 @@ def points(mean: Float[Array, " n"], root: Float[Array, "n n"]) -> Float[Array, 
 
 def _deviations(at: Float[Array, "p n"]) -> tuple[Float[Array, " n"], Float[Array, "n p"]]:
     """Mean of the points, and their deviations over √2n."""
-    mean = at[0] + (at - at[0][None]).mean(axis=0)  # of differences: what the points share is not rounded
+    mean = at[0] + (at - at[0][None]).mean(axis=0)  # mean of differences, so that a common offset is not rounded
     return mean, (at - mean[None]).T / jnp.sqrt(jnp.asarray(len(at), float))
 
 
@@ -69,14 +70,14 @@ def predict(
 def observe(
     h: Callable[[Float[Array, " n"]], Float[Array, " M"]], mean: Float[Array, " n"], root: Float[Array, "n n"]
 ) -> Seen:
-    """What h should measure; the points are drawn anew around the prediction. Xu et al. 2023, (12)-(17)."""
+    """Expected measurement by h; the points are drawn again around the prediction. Xu et al. 2023, (12)-(17)."""
     at = points(mean, root)
     expected, dz = _deviations(jax.vmap(h)(at))
     return Seen(expected, (at - mean[None]).T / jnp.sqrt(jnp.asarray(len(at), float)), dz)
 
 
 def bent(seen: Seen, at_mean: Float[Array, " M"]) -> Float[Array, " M"]:
-    """Variance of each measurement by the curvature of h, which the points do not show; `at_mean` is h(mean).
+    """Variance of each measurement from the curvature of h, which the points miss; `at_mean` is h(mean).
 
     Small beside R unless the spread is a good part of the way over which h bends: a filter that has been lost for long
     would else believe its first fixes too much. The second-order term of a Gaussian filter (Jazwinski 1970, 9.3).

@@ -1,4 +1,4 @@
-"""Fuzzy inference: how far each rule applies, and what all of them say together. NumPy or JAX, as the features are."""
+"""Fuzzy inference: firing strength of each rule, and the combined output. NumPy or JAX, as the features are."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from sensorfault.numerics.unit_range import UnitRange
 
-FAINT = 1e-30  # nearer to its center no membership is told from whole; fainter none is told from none
+FAINT = 1e-30  # squared distances from a center and triangular memberships are at least this
 
 
 def bell(t: Float[Any, "*s"], slope: Float[Any, "*p"]) -> Float[Any, "*s"]:
@@ -28,7 +28,7 @@ def gaussian(t: Float[Any, "*s"], slope: Float[Any, "*p"]) -> Float[Any, "*s"]:
 
 
 def triangle(t: Float[Any, "*s"], slope: Float[Any, "*p"]) -> Float[Any, "*s"]:
-    """Triangle, without a slope. Beyond its feet it goes on falling, so that where no rule fires the nearest does."""
+    """Triangle, without a slope. It keeps falling beyond its feet, so that where no rule fires the nearest one does."""
     xp = t.__array_namespace__()
     away = xp.abs(t)
     # ln μ = ln(1 - |t|)
@@ -40,7 +40,7 @@ MEMBERSHIPS: dict[str, Callable[[Any, Any], Any]] = {"bell": bell, "gaussian": g
 
 
 class Premises(eqx.Module):
-    """P membership functions, and R rules that each ask for one of every input.
+    """P membership functions, and R rules that each use one membership of every input.
 
     `inputs[p]`: the input that membership p looks at. `rules[r]`: the memberships that rule r asks for.
     """
@@ -58,12 +58,12 @@ class Premises(eqx.Module):
         return MEMBERSHIPS[self.kind]((seen - self.center) / self.width, self.slope)
 
     def asked(self) -> Float[np.ndarray, "R P"]:
-        """1 where a rule asks for a membership, else 0."""
+        """1 where a rule uses a membership, else 0."""
         return np.array([[float(p in rule) for p in range(len(self.inputs))] for rule in self.rules])
 
 
 def strengths(fired: Float[Any, "*batch R"]) -> Float[Any, "*batch R"]:
-    """Normalised firing strengths of rules whose ln w is given; the strongest is never lost, so they sum to 1."""
+    """Normalised firing strengths from ln w; the strongest never underflows, so they sum to 1."""
     xp = fired.__array_namespace__()
     w = xp.exp(fired - fired.max(axis=-1, keepdims=True))
     # (23) w_i / Σ w

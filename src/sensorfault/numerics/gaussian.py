@@ -9,7 +9,7 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 
-@partial(jax.jit, inline=True)  # a loop called by itself is compiled anew each time
+@partial(jax.jit, inline=True)  # without jit the loop would be compiled at every call
 def precision(cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> Float[Array, "C C"]:
     """Inverse of the covariance of the `known` components; zero for the others, which are marginalised out.
 
@@ -30,7 +30,7 @@ def precision(cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> Float[Array
 
 
 class BaardaW(NamedTuple):
-    """How much of the squared distance e' S⁻¹ e of a Gaussian vector goes away when one component may be anything.
+    """Reduction of the squared distance e' S⁻¹ e of a Gaussian vector when one component is left out.
 
     `total` is the distance and `taken` what each component takes away, both over `largest`²: the largest component in
     its own standard deviations is taken out before squaring, lest a wild value overflow.
@@ -42,7 +42,7 @@ class BaardaW(NamedTuple):
 
 
 def baarda_w(value: Float[Array, " C"], cov: Float[Array, "C C"], known: Bool[Array, " C"]) -> BaardaW:
-    """Of the `known` components; the others are marginalised out and take nothing away."""
+    """The reductions of the `known` components; the others are marginalised out and have zero."""
     own = jnp.eye(len(known))
     sigma = jnp.sqrt((own * cov).sum(axis=1))
     e = jnp.where(known, value / sigma, 0.0)

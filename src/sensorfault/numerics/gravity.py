@@ -1,4 +1,4 @@
-"""What a plumb line feels: normal gravity of the WGS-84 ellipsoid as a vector in the earth's frame.
+"""Normal gravity of the WGS-84 ellipsoid (as a plumb line shows it), as a vector in the earth's frame.
 
 Source: W. A. Heiskanen, H. Moritz, Physical Geodesy (1967), section 2-9; the zonal terms as vectors are those of
 O. Montenbruck, E. Gill, Satellite Orbits (2000), section 3.2.

@@ -1,4 +1,4 @@
-"""What an innovation has to say of its measurement."""
+"""Features of an innovation."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -11,9 +11,9 @@ UNITS = ("m", "", "m²")
 
 
 def features(value: Float[Any, "*s"], variance: Float[Any, "*s"], noise: Float[Any, "*s"]) -> Float[Any, "*s 3"]:
-    """|r|, M² and R*: training and live share them. Xu et al. 2023, equations (28)-(31). NumPy or JAX.
+    """|r|, M² and R*, for training and live use. Xu et al. 2023, equations (28)-(31). NumPy or JAX.
 
-    `value`: the innovation; `variance`: what the filter expects of it, with the nominal noise; `noise`: the variance of
+    `value`: the innovation; `variance`: as predicted by the filter with the nominal noise; `noise`: the variance of
     the measurement in use, adapted or not.
     """
     xp = value.__array_namespace__()

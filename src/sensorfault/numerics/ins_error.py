@@ -1,8 +1,8 @@
-"""How errors of an inertial navigation with satellites grow, and how an estimate of them is taken out.
+"""Growth of the errors of GNSS/INS navigation, and their correction by an estimate.
 
 17 errors, estimate minus truth: attitude ψ, velocity, position (3 each, in ECEF), what gyros and accelerometers show
 too much (3 each, body axes), clock offset [m] and drift [m/s]; behind them one clock offset [m] for each further system
-of satellites. METHODS.md C; Groves (2013), section 14.2.3.
+of satellites. Wang et al. 2023; Groves (2013), section 14.2.3.
 """
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
@@ -22,7 +22,7 @@ CLOCK, DRIFT, OFFSETS = 15, 16, 17
 
 
 class Instruments(NamedTuple):
-    """What is taken for wrong with the instruments; added to by `corrected`."""
+    """The estimated errors of the instruments; `corrected` adds to them."""
 
     gyro: Float[Array, "3"]  # bias [rad/s]
     force: Float[Array, "3"]  # bias [m/s²]
@@ -61,11 +61,11 @@ def transition(at: Navigation, way: Way, states: int) -> Float[Array, "n n"]:
 
 
 def corrected(at: Navigation, own: Instruments, error: Float[Array, " n"]) -> tuple[Navigation, Instruments]:
-    """Navigation and instruments with the estimated errors taken out (Groves 14.7 to 14.9)."""
+    """Navigation and instruments corrected by the estimated errors (Groves 14.7 to 14.9)."""
     # C = (I - [ψ×]) Ĉ, which the exponential keeps a rotation
     attitude = orthonormal(times(rotation(-error[PSI]), at.attitude))
     nav = Navigation(attitude, at.velocity - error[VEL], at.position - error[POS])
-    # what they show too much is bias not yet taken away
+    # the excess that the instruments show is bias that is not yet removed
     instruments = Instruments(
         own.gyro + error[GYRO],
         own.force + error[ACC],

@@ -1,4 +1,4 @@
-"""How large a fault must be to be found, and how far off a position may be that no test complains of."""
+"""Minimum detectable bias, and the position error that can remain undetected (protection level)."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ def noncentrality(false_alarms: float, missed: float) -> float:
     """δ = Φ⁻¹(1 - α/2) + Φ⁻¹(1 - β), in standard deviations of a two-sided test on one normal number.
 
     `false_alarms` α: the share of healthy tests over the limit; `missed` β: that of faulty tests under it. Baarda 1968.
-    The far side of the test is left out, which only matters where β is near 1 - α.
+    The opposite tail is neglected, which only matters where β is near 1 - α.
     """
     from scipy.special import ndtri
 
@@ -20,7 +20,7 @@ def noncentrality(false_alarms: float, missed: float) -> float:
 def detectable(
     cov: Float[np.ndarray, "*s C C"], known: Bool[np.ndarray, "*s C"], delta: float
 ) -> Float[np.ndarray, "*s C"]:
-    """Minimum detectable bias of each channel by the w-test, δ / √(S⁻¹)_ii [SI]; inf where it is not known.
+    """Minimum detectable bias of each channel by the w-test, δ / √(S⁻¹)_ii [SI]; inf for unknown channels.
 
     Baarda 1968. `cov`: covariance S of the innovations; what is not known is marginalised out. `delta`: of
     `noncentrality` at the rates wanted, or the limit in use plus Φ⁻¹(1 - β).
@@ -33,12 +33,12 @@ def detectable(
 def detectable_alone(
     cov: Float[np.ndarray, "*s C C"], known: Bool[np.ndarray, "*s C"], delta: float
 ) -> Float[np.ndarray, "*s C"]:
-    """Minimum detectable bias of each channel by a gate on its own innovation, δ √S_ii [SI]; inf where not known."""
+    """Minimum detectable bias of each channel by a gate on its own innovation, δ √S_ii [SI]; inf if unknown."""
     return np.where(known, delta * np.sqrt(np.diagonal(cov, axis1=-2, axis2=-1)), np.inf)
 
 
 def inert(detectable: Float[np.ndarray, "*s C"], matters: float) -> Bool[np.ndarray, "*s C"]:
-    """Where a gate sleeps: no bias smaller than `matters` (the alert limit) [SI] could pass it, as S is too large.
+    """Where a gate is inert: S is so large that it misses even a bias of `matters` (the alert limit) [SI].
 
     Such a gate raises no false alarm either, so a low rate of them is no proof that it works. A channel that is not
     known is inert.
@@ -47,7 +47,7 @@ def inert(detectable: Float[np.ndarray, "*s C"], matters: float) -> Bool[np.ndar
 
 
 class Protection(NamedTuple):
-    """Horizontal protection level [m]: without a fault, and with one unnoticed on the `worst` channel, never less."""
+    """Horizontal protection level [m]: without a fault, and with an undetected one on the `worst` channel."""
 
     fault_free: float
     faulty: float
@@ -60,7 +60,7 @@ def protection(
     detectable: Float[np.ndarray, " C"],
     risk: float,
 ) -> Protection:
-    """How far off the horizontal position may be after the update, with at most this risk for each hypothesis.
+    """Bound of the horizontal position error after the update, with at most this risk for each hypothesis.
 
     Without a fault: √(-2 ln risk), Rayleigh's quantile, times the longer half axis of the error ellipse (RTCA DO-229,
     appendix J: 6.18 at 5e-9). With one on channel i, unnoticed: the shift that its minimum detectable bias makes,
@@ -83,6 +83,6 @@ def protection(
 
 
 def _alone(cov: Float[np.ndarray, "*s C C"], known: Bool[np.ndarray, "*s C"]) -> Float[np.ndarray, "*s C C"]:
-    """S of the known channels, and 1 for each of the others."""
+    """S of the known channels, with 1 on the diagonal for the others."""
     both = known[..., :, None] & known[..., None, :]
     return np.where(both, cov, np.eye(cov.shape[-1]))

@@ -25,7 +25,7 @@ def correct(
     """M measurements with independent noise of variance r, one after the other in Joseph's form.
 
     `innovation` = measured - expected of the mean given, `rows` = H there: together they do what one joint update does.
-    What is not `taken` changes nothing.
+    Measurements that are not `taken` change nothing.
     """
     shift = jnp.zeros_like(mean)
     for i in range(len(r)):

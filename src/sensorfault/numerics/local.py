@@ -1,4 +1,4 @@
-"""East and north of a point in metres, inside a compiled step: short ways on the WGS-84 ellipsoid.
+"""East and north of a point in metres, inside a compiled step: short distances on the WGS-84 ellipsoid.
 
 The middle-latitude formula, good to a millimetre over 10 km below 60 degrees. Across the date line the short way is
 taken; within FARTHEST of a pole east means nothing and there is no answer.
@@ -12,7 +12,7 @@ from jaxtyping import Array, Bool, Float
 
 from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
 
-FARTHEST = np.deg2rad(89.9)  # latitude up to which east has a meaning [rad]
+FARTHEST = np.deg2rad(89.9)  # east is defined up to this latitude [rad]
 
 Number = Float[Array, ""]
 
@@ -30,7 +30,7 @@ def on_the_map(latitude: Number, longitude: Number) -> Bool[Array, ""]:
 
 
 def east_north(latitude: Number, longitude: Number, from_latitude: Number, from_longitude: Number) -> Float[Array, "2"]:
-    """The way from one point to another, east and north [m]; angles in rad. Zeros where one is not `on_the_map`."""
+    """Displacement from one point to another, east and north [m]; angles in rad. Zeros if one is not `on_the_map`."""
     good = on_the_map(latitude, longitude) & on_the_map(from_latitude, from_longitude)
     middle = jnp.where(good, (latitude + from_latitude) / 2, 0.0)
     # N = a / √(1 - e² sin²φ),  M = N³ (1 - e²) / a²

@@ -1,4 +1,4 @@
-"""Central moments up to the fourth, kept so that nothing cancels (Pébay 2008): of one more value, of blocks."""
+"""Central moments up to the fourth, updated by a value or by blocks without cancellation (Pébay 2008)."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 
 class Moments(NamedTuple):
-    """Of n values each: their number, mean, and the sums of the second to fourth powers of their distance from it."""
+    """Number of values, mean, and sums of the second to fourth powers of the deviations from the mean."""
 
     n: Float[Array, "*s"]
     mean: Float[Array, "*s"]
@@ -19,12 +19,12 @@ class Moments(NamedTuple):
 
 
 def nothing(*shape: int) -> Moments:
-    """Of no values."""
+    """Moments of no values."""
     return Moments(*(jnp.zeros(shape) for _ in range(5)))
 
 
 def together(blocks: Moments) -> Moments:
-    """Of all values of the blocks on the first axis."""
+    """Moments of all values of the blocks on the first axis."""
     n = blocks.n.sum(axis=0)
     mean = (blocks.n * blocks.mean).sum(axis=0) / jnp.maximum(n, 1.0)
     d = jnp.where(blocks.n > 0, blocks.mean - mean[None], 0.0)
@@ -36,7 +36,7 @@ def together(blocks: Moments) -> Moments:
 
 
 def joined(block: Moments, value: Float[Array, "*s"]) -> Moments:
-    """With one more value."""
+    """Moments with one more value."""
     one, zero = jnp.ones_like(value), jnp.zeros_like(value)
     both = zip(block, (one, value, zero, zero, zero), strict=True)
     return together(Moments(*(jnp.stack([a, b]) for a, b in both)))

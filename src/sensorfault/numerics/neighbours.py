@@ -7,22 +7,22 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float, Int
 
-ROW = 32  # XLA takes a sum over an axis of more than these in two passes, and a live sample pays for each
+ROW = 32  # XLA sums a longer axis in two passes, which costs time in live use
 NAN = int(np.float32(np.nan).view(np.int32))  # of all bits of positive numbers the greatest
 
 
 def nearest_in_order(
     points: Float[Array, " N"], one: Float[Array, ""], k: int
 ) -> tuple[Int[Array, " k"], Float[Array, " k"]]:
-    """Which k of the points, which are in ascending order, are nearest to one; and how far they are."""
-    # they are the run of k that begins after the last point i farther away than point i + k
+    """The k points nearest to one, of points in ascending order, and their distances."""
+    # they are the k points after the last point i that is farther away than point i + k
     middle = (points[:-k] + points[k:]) / 2
     index = jnp.searchsorted(middle, one) + jnp.arange(k, dtype=jnp.int32)
     return index, jnp.abs(points[index] - one)
 
 
 def in_rows(values: Float[Array, "F N"], fill: float) -> Float[Array, "F R 32"]:
-    """The values of N points in rows, the last of which is filled up."""
+    """The values of N points in rows; the last row is padded."""
     lacking = -values.shape[1] % ROW
     return jnp.pad(values, ((0, 0), (0, lacking)), constant_values=fill).reshape(len(values), -1, ROW)
 

@@ -1,11 +1,11 @@
-"""How non-normal a finite sample of normal numbers looks: quantiles of Jarque and Bera's statistic."""
+"""Quantiles of the Jarque-Bera statistic for finite samples of normal numbers."""
 
 import numpy as np
 from jaxtyping import Float
 
 # Quantiles of JB of n independent normal numbers, a row a size, a column a probability, by simulation (2 million
 # samples up to n = 98, a million up to 250, then 400,000; seed 20210531; good to 1 % up to 0.99, to some 5 % beyond).
-# For n without end JB is chi-square with two degrees of freedom.
+# For n to infinity JB is chi-square with two degrees of freedom.
 SIZES = (10, 20, 30, 50, 75, 98, 150, 250, 500, 1000, 2000)
 PROBABILITIES = (0.5, 0.9, 0.95, 0.99, 0.999, 0.9999)
 TABLE = (
@@ -24,7 +24,7 @@ TABLE = (
 
 
 def jarque_bera_quantile(n: Float[np.ndarray, "*s"] | float, probability: float) -> Float[np.ndarray, "*s"]:
-    """What JB of n independent normal numbers stays below with this probability (0.5 to 0.9999).
+    """Quantile of JB of n independent normal numbers for this probability (0.5 to 0.9999).
 
     Interpolated in 1/√n between sizes and in the logarithm of the tail between probabilities; below the smallest size
     that of the smallest, beyond the largest drawn on towards chi-square's.

@@ -1,4 +1,4 @@
-"""Local outlier factor of new points against a history that stays as it is."""
+"""Local outlier factor of new points against a fixed history."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from sensorfault.numerics.neighbours import in_rows, nearest_in_order, shares
 
-TINY = 1e-10  # added to a mean reach, lest a history with more than k equal points divide by nought (scikit-learn's)
+TINY = 1e-10  # added to a mean reach, against division by zero with more than k equal points (as scikit-learn)
 
 
 def density(reach: Float[Any, "*s"]) -> Float[Any, "*s"]:
@@ -22,7 +22,7 @@ def density(reach: Float[Any, "*s"]) -> Float[Any, "*s"]:
 
 
 class LocalDensity(eqx.Module):
-    """How dense a history lies at each of its N points, in ascending order where they have one feature.
+    """Local density of a history at each of its N points, in ascending order if they have one feature.
 
     The points stand feature by feature, so that distances are computed several at a time. `near`: of each point how far
     it is to its k-th neighbour (the k-distance), and its local reachability density.
@@ -44,7 +44,7 @@ class LocalDensity(eqx.Module):
             return found
         box = jnp.stack([self.points.min(axis=1), self.points.max(axis=1)], axis=1)
         points, near = in_rows(self.points, jnp.inf), in_rows(self.near.T, 0.0)
-        # one by one stays in the processor's cache
+        # one point at a time stays in the processor's cache
         found = lax.map(lambda one: _factor(near, *shares(points, box, one, self.k)), asked)
         return found
 

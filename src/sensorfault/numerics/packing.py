@@ -1,4 +1,4 @@
-"""A tree of small arrays as two vectors: what a scan writes in two strokes instead of twelve."""
+"""A tree of small arrays as two vectors, so that a scan writes two arrays instead of twelve."""
 
 from typing import Any, TypeVar
 

@@ -1,4 +1,4 @@
-"""Pairs that should agree: what their differences were some seconds and a minute ago, beat by beat."""
+"""Differences of pairs that should agree: their means some seconds ago and a minute ago, beat by beat."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -10,9 +10,9 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.numerics.columns import shifted
 
 RECENT, PAST, OLDEST = 10, 50, 10  # beats: the newest, those remembered before, and of these the reference's
-NEWEST, ENOUGH = 2, 4  # beats that a jump is seen in; of those before it in RECENT so many must be believed
+NEWEST, ENOUGH = 2, 4  # beats that show a jump; so many trusted beats in RECENT are needed before it
 FARTHEST = 1e9  # [m]
-LEAST_S = 1e-6  # of a doubt that has just begun
+LEAST_S = 1e-6  # duration of a suspicion that has just begun [s]
 
 
 class Memory(NamedTuple):
@@ -27,8 +27,8 @@ class Memory(NamedTuple):
     many: Float[Array, " P"]
     recent: Float[Array, "R P"]  # the newest beats' means, the newest last [m]
     lived: Bool[Array, "R P"]  # whether there was one
-    clean: Bool[Array, "R P"]  # whether it was believed
-    past: Float[Array, "Q P"]  # what was believed before them [m]
+    clean: Bool[Array, "R P"]  # whether it was trusted
+    past: Float[Array, "Q P"]  # trusted means before them [m]
     trusted: Bool[Array, "Q P"]
     kept: Float[Array, "2 P"]  # [m]
     sure: Bool[Array, "2 P"]
@@ -42,18 +42,18 @@ class Memory(NamedTuple):
         return cls(began, none, none, recent, no, no, past, past > 0, two, two > 0, none)
 
     def received(self, both: Bool[Array, " P"], difference: Float[Array, " P"]) -> "Memory":
-        """With these differences in the beat."""
+        """Add these differences to the beat."""
         return self._replace(
             total=jnp.where(both, self.total + difference, self.total), many=jnp.where(both, self.many + 1, self.many)
         )
 
     def beaten(self, over: Bool[Array, ""], now: Float[Array, ""]) -> "Memory":
-        """If the beat is over: with it in its place, and the next one begun."""
+        """If the beat is over, store it and begin the next."""
         return Memory(*[jnp.where(over, a, b) for a, b in zip(self._next(now), self, strict=True)])
 
     def _next(self, now: Float[Array, ""]) -> "Memory":
         lives, held = self.many > 0, self.doubted > 0
-        # of a beat that was doubted the reference is remembered instead
+        # for a suspected beat the reference is stored instead
         clean, doubtful = self.clean[0], self.lived[0] & ~self.clean[0]
         after = self._replace(
             began=now,
@@ -84,12 +84,12 @@ class Memory(NamedTuple):
         return jnp.stack(gaps), jnp.stack(known)
 
     def since(self) -> Float[Array, " P"]:
-        """How far the newest two beats are from those of a minute ago [m]; as far as can be where that is not known."""
+        """Distance of the newest two beats from those of a minute ago [m]; FARTHEST where that is not known."""
         newest, _ = _mean(self.recent[-NEWEST:], self.lived[-NEWEST:])
         return jnp.where(self.sure[1], jnp.abs(newest - self.kept[1]), FARTHEST)
 
     def doubting(self, begins: Bool[Array, " P"], ends: Bool[Array, " P"], steady: Bool[Array, " P"]) -> "Memory":
-        """With doubts that begin, go on or end.
+        """Update which pairs are suspected.
 
         What came lately may have been wrong before it was doubted: of the newest beats none is believed then, and of
         those before them none but the reference, where the pair is `steady` and it does not age. After a doubt what a
@@ -106,7 +106,7 @@ class Memory(NamedTuple):
         )
 
     def forgotten(self, pairs: Bool[Array, " P"]) -> "Memory":
-        """Nothing remembered of these pairs."""
+        """Forget everything about these pairs."""
         return self._replace(
             total=jnp.where(pairs, 0.0, self.total),
             many=jnp.where(pairs, 0.0, self.many),
@@ -119,6 +119,6 @@ class Memory(NamedTuple):
 
 
 def _mean(beats: Float[Array, "B P"], there: Bool[Array, "B P"]) -> tuple[Float[Array, " P"], Float[Array, " P"]]:
-    """Of those that are there, and how many they are."""
+    """Mean of the values that exist, and their number."""
     many = there.astype(beats.dtype).sum(axis=0)
     return jnp.where(there, beats, 0.0).sum(axis=0) / jnp.maximum(many, 1), many

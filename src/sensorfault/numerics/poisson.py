@@ -1,10 +1,10 @@
-"""What a count says of a rate."""
+"""Confidence bound of a rate from a count."""
 
 Z95 = 1.6449  # one-sided 95 % point of the normal distribution
 
 
 def rate_below(count: int, exposure: float) -> float:
-    """The rate below which `count` events in `exposure` leave the true one, with 95 % confidence; inf without exposure.
+    """Upper 95 % confidence bound of the rate after `count` events in `exposure`; inf without exposure.
 
     The upper Poisson limit is half the 95 % point of chi-square with 2 (count + 1) degrees of freedom, here by Wilson
     and Hilferty (1931), within 1 %: none seen is three at most.

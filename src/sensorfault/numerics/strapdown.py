@@ -1,4 +1,4 @@
-"""Strapdown inertial navigation in the earth's frame (ECEF), as a compiled step takes it: sums, no calls.
+"""Strapdown inertial navigation in the earth's frame (ECEF), for a compiled step: sums, no library calls.
 
 Source: P. D. Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2nd ed. (2013),
 section 5.3.
@@ -17,7 +17,7 @@ from sensorfault.numerics.gravity import gravity
 
 
 class Navigation(NamedTuple):
-    """Where a vehicle is, how it moves, how it lies: all in ECEF, the attitude from body axes to ECEF."""
+    """Position, velocity and attitude of a vehicle in ECEF; the attitude rotates body axes to ECEF."""
 
     attitude: Float[Array, "3 3"]
     velocity: Float[Array, "3"]  # [m/s]
@@ -27,7 +27,7 @@ class Navigation(NamedTuple):
 class Rows(NamedTuple):
     """R rows of an inertial unit: turn rates [rad/s] and specific force [m/s²] in body axes, and for how long each [s].
 
-    `ok`: the row may be believed; a row of no length is none.
+    `ok`: the row can be trusted; a row of length 0 does not count.
     """
 
     gyro: Float[Array, "R 3"]
@@ -59,7 +59,7 @@ def skew(a: Float[Array, "3"]) -> Float[Array, "3 3"]:
 
 
 def times(a: Float[Array, "m k"], b: Float[Array, "k n"]) -> Float[Array, "m n"]:
-    """A B without a call."""
+    """A B without a library call."""
     return (a[:, :, None] * b[None]).sum(axis=1)
 
 
@@ -71,7 +71,7 @@ def rotation(angle: Float[Array, "3"]) -> Float[Array, "3 3"]:
 
 
 def orthonormal(attitude: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
-    """The rotation nearest to one that is nearly one: a step of C (3 I - Cᵀ C) / 2."""
+    """Re-orthonormalise a matrix that is nearly a rotation: one step of C (3 I - Cᵀ C) / 2."""
     return 1.5 * attitude - 0.5 * times(attitude, times(attitude.T, attitude))
 
 

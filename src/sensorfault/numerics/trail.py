@@ -1,4 +1,4 @@
-"""A trail of places with the way gone since each: K slots, the newest first, masks instead of indices."""
+"""A trail of positions with the distance travelled since each: K slots, the newest first, masks instead of indices."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -12,7 +12,7 @@ NEAR_S = 1e-6  # ages closer than this are the same
 
 
 class Trail(NamedTuple):
-    """Places (latitude, longitude [rad]) with what has happened since: age [s], way east and north [m], path [m].
+    """Positions (latitude, longitude [rad]) with age [s], displacement east and north [m] and path length since [m].
 
     `velocity`: east and north [m/s] when the place was put down. `there`: whether the slot holds a place.
     """
@@ -27,7 +27,7 @@ class Trail(NamedTuple):
 
     @classmethod
     def empty(cls, slots: int) -> "Trail":
-        """No place yet."""
+        """No position yet."""
         flat, pairs = jnp.zeros(slots), jnp.zeros((slots, 2))
         return cls(flat, flat, pairs, flat, pairs, flat, jnp.zeros(slots, bool))
 
@@ -49,7 +49,7 @@ class Trail(NamedTuple):
         velocity: Float[Array, "2"],
         spacing: Float[Array, ""],
     ) -> "Trail":
-        """With a new place in front, if `now` and the newest is at least `spacing` [s] old; the oldest drops out."""
+        """Add a new position in front, if `now` and the newest is at least `spacing` [s] old; drop the oldest."""
         zero = jnp.zeros(())
         place = Trail(latitude, longitude, velocity, zero, jnp.zeros(2), zero, jnp.ones((), bool))
         push = now & ((self.age[0] >= spacing - NEAR_S) | ~self.there[0])
@@ -60,13 +60,13 @@ class Trail(NamedTuple):
         return Trail(*jax.tree.map(shifted, tuple(self), tuple(place)))
 
     def newest(self, least: Float[Array, ""]) -> Bool[Array, " K"]:
-        """The newest place that is at least so old [s], as a mask of one; none is there if nothing is so old."""
+        """Mask of the newest position that is at least so old [s]; all False if there is none."""
         fit = self.there & (self.age >= least - NEAR_S)
         # the first that fits: none before it does
         before = jnp.cumsum(fit.astype(self.age.dtype)) - fit.astype(self.age.dtype)
         return fit & (before < 0.5)
 
     def pick(self, one: Bool[Array, " K"]) -> "Trail":
-        """That place: its fields without the leading axis, zeros if the mask is empty."""
+        """The position of this mask: its fields without the leading axis, zeros if the mask is empty."""
         fields = [jnp.where(one if x.ndim == 1 else one[:, None], x, 0.0).sum(axis=0) for x in self[:-1]]
         return Trail(*[*fields, one.any()])

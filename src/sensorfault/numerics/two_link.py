@@ -1,4 +1,4 @@
-"""Two rigid links that swing in a vertical plane, moved by a torque at each joint.
+"""Two rigid links in a vertical plane, with a torque at each joint.
 
 State: rates x1, x2 [rad/s] and angles x3, x4 [rad] of the joints, the first angle from the horizontal, the second from
 the first link. NumPy and JAX arrays alike: whichever comes in goes out.
@@ -53,7 +53,7 @@ def accelerations(a: Constants | Float[Any, "5"], state: Float[Any, "4"], torque
     left = a2 * sin * (x1 * x2 + x2**2 / 2) - a4 * xp.cos(x3) - weight + torque[0]
     right = -a2 * sin * x1**2 / 2 - weight + torque[1]
     c = d * a3 - e**2
-    # (3), which the print leaves out
+    # (3), which is missing in the printed paper
     return xp.stack([(a3 * left - e * right) / c, (d * right - e * left) / c])
 
 

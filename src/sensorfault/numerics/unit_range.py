@@ -1,4 +1,4 @@
-"""Features as shares of the range that training has shown."""
+"""Features scaled by their training range."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -7,7 +7,7 @@ from typing import Any
 import equinox as eqx
 from jaxtyping import Float
 
-LEAST = 1e-300  # whose logarithm is still a number
+LEAST = 1e-300  # smallest number for the logarithm
 
 
 class UnitRange(eqx.Module):

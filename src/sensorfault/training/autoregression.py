@@ -1,4 +1,4 @@
-"""The linear predictor: least squares, at once."""
+"""The linear autoregressive predictor, fitted by least squares."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -11,13 +11,15 @@ from sensorfault.training.windows import Windows
 
 
 def fit_autoregression(windows: Windows) -> Linear:
-    """y~ = W x + b of the whole window x, the shortest W of all that leave the least square error.
+    """y~ = W x + b of the whole window x; the least-squares W of smallest norm.
 
     Raises:
         LogError: no window.
     """
     if not len(windows.first):
-        raise LogError(f"there is no unbroken window of {windows.length} rows to learn from; give a longer log.")
+        raise LogError(
+            f"no {windows.length} rows follow each other without a gap, so nothing can be fitted; give a longer log."
+        )
     x = np.concatenate([windows.matrix(), np.ones((len(windows.first), 1))], axis=1)
     # min ||x W' - y||
     found = np.linalg.lstsq(x, windows.target)[0]

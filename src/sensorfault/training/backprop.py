@@ -1,4 +1,4 @@
-"""The extreme learning machine's network, all of its weights trained: what backpropagation makes of the same rows."""
+"""The network of the extreme learning machine with all weights trained by backpropagation."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -16,14 +16,14 @@ from sensorfault.training.initial import new_mlp
 from sensorfault.training.session import SILENT, Session
 from sensorfault.training.windows import Windows
 
-# The batch and rate that, of those in benchmarks/bench_fit.py, are first as good as the ELM, and best in the end.
+# Of the settings in benchmarks/bench_fit.py this one reaches the ELM's error first and the smallest error in the end.
 PLAN = Plan(epochs=20_000, batch=32, rate=0.003, patience=100)
 
 Start = Callable[[int, int, int], Mlp]
 
 
 def untrained(channels: int, hidden: int, seed: int) -> Mlp:
-    """Hidden weights and biases uniform in (-1, 1), those of the ELM of the same seed; small output weights."""
+    """Hidden weights and biases as in the ELM with the same seed, uniform in (-1, 1); small output weights."""
     random = np.random.default_rng(seed)
     w, b = random.uniform(-1, 1, (hidden, channels)), random.uniform(-1, 1, hidden)
     beta = random.normal(0, hidden**-0.5, (channels, hidden))
@@ -32,14 +32,14 @@ def untrained(channels: int, hidden: int, seed: int) -> Mlp:
 
 
 def usual(channels: int, hidden: int, seed: int) -> Mlp:
-    """As networks for backpropagation usually start: small weights, after Glorot & Bengio 2010."""
+    """The usual start for backpropagation: small weights (Glorot & Bengio 2010)."""
     return new_mlp(seed, channels, channels, (hidden,), "sigmoid")
 
 
 def train_copy(
     x: Float[np.ndarray, "N C"], hidden: int, plan: Plan, seed: int, session: Session, start: Start = untrained
 ) -> Trained[Mlp]:
-    """The network that copies scaled rows, by gradient."""
+    """The network trained to copy scaled rows."""
     rows = Windows(x, np.arange(len(x)), x, 1)
     return train(start(x.shape[1], hidden, seed), rows, plan, seed, session)
 
@@ -53,12 +53,12 @@ def fit_backprop(
     session: Session = SILENT,
     start: Start = untrained,
 ) -> Reconstruction:
-    """Autoencoder on healthy rows (SI, finite) by backpropagation: the comparator of Min et al. 2021, section 3.1.
+    """Autoencoder on healthy rows (SI, finite) by backpropagation, as compared in Min et al. 2021, section 3.1.
 
     `start(channels, hidden, seed)`: the network before training.
 
     Raises:
-        LogError: too few rows, or a checkpoint of another training.
+        LogError: too few rows, or the checkpoint is of another training.
     """
     x = scaling.to_unit(value)
     network = train_copy(x, hidden, plan, seed, session, start).net

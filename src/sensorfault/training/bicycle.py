@@ -1,4 +1,4 @@
-"""Noise, lags and mounting of the bicycle-model Kalman filter, from a healthy drive."""
+"""Fit noise, lags and mounting of the bicycle-model Kalman filter on a healthy drive."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -17,14 +17,14 @@ from sensorfault.stages.residual.bicycle_kalman import Belief, BicycleKalman, Co
 from sensorfault.training.mounting import fit_mounting
 from sensorfault.vehicles.car import Roles, moving
 
-MOST_ROWS = 8000  # of the drive, from where it moves first, that the noise is fitted to
-WARM_S = 10.0  # of a filter's start that do not count
-HUBER = 3.0  # an innovation beyond so many standard deviations counts by its size, not its square
-ROUNDS = 15  # of the search for noise and lags
+MOST_ROWS = 8000  # the noise is fitted on at most so many rows, from where the car first moves
+WARM_S = 10.0  # the start of a filter is ignored for this long [s]
+HUBER = 3.0  # a larger normalised innovation counts by its size, not its square
+ROUNDS = 15  # rounds of the search for noise and lags
 FIRST_STEP = (0.7,) * 8 + (0.1, 0.1, 0.02)
 LEAST_MOVING_S = 20.0
-BIAS_WALK = 1e-8  # of the turn's bias [(rad/s)^2 per s], slower than a short drive can tell
-# sd of: way [m/√s], heading [rad/√s], speed [m/s/√s], bias of acceleration [m/s^2/√s], a fix along and across [m],
+BIAS_WALK = 1e-8  # of the turn rate's bias [(rad/s)^2 per s]; too slow to be seen in a short drive
+# sd of: position [m/√s], heading [rad/√s], speed [m/s/√s], bias of acceleration [m/s^2/√s], a fix along and across [m],
 # velocity [m/s]
 START = (0.1, 0.01, 0.3, 0.05, 0.1, 0.1, 0.05)
 LEAST = (1e-3, 1e-4, 1e-2, 1e-3, 1e-2, 1e-2, 1e-2)
@@ -34,15 +34,15 @@ FARTHEST = (0.5, 0.5, 0.1)  # lag of position and velocity [s], logarithm of the
 def fit_bicycle(
     log: Log, found: Roles, wheelbase_m: float | None = None, steering_ratio: float | None = None
 ) -> BicycleKalman:
-    """The filter for a car whose healthy drive this is, Q, R and lags by likelihood.
+    """The filter for the car of this healthy drive; Q, R and lags by maximum likelihood.
 
-    The steering angle turns the model where the log and a wheelbase are given, else the gyro.
+    The turn rate comes from the steering angle if log and wheelbase are given, else from the gyro.
 
     Raises:
-        LogError: a wheelbase that is none, a channel that is missing, or a drive that hardly moves.
+        LogError: the wheelbase is not positive, a channel is missing, or the car hardly moves.
     """
     if wheelbase_m is not None and not wheelbase_m > 0:
-        raise LogError(f"{log.name}: the wheelbase is {wheelbase_m:g} m; give the distance of the axles, above 0.")
+        raise LogError(f"{log.name}: wheelbase_m is {wheelbase_m:g}; it must be positive, the distance of the axles.")
     check_bicycle(log, found)
     fitted = _descend(_start(log, found, wheelbase_m, steering_ratio), log, found)
     healthy: BicycleKalman = eqx.tree_at(lambda m: m.spread, fitted, jnp.asarray(healthy_spread(fitted, log)))
@@ -50,10 +50,10 @@ def fit_bicycle(
 
 
 def check_bicycle(log: Log, found: Roles) -> None:
-    """Whether the log has what the bicycle is fitted to.
+    """Check that the log has the channels and the motion that the fit needs.
 
     Raises:
-        LogError: a channel that is missing, or a drive that hardly moves.
+        LogError: a channel is missing, or the car hardly moves.
     """
     steered = found.steering is not None
     lacking = [
@@ -73,8 +73,8 @@ def check_bicycle(log: Log, found: Roles) -> None:
     seconds = len(times) * float(np.median(np.diff(times))) if len(times) > 2 else 0.0
     if seconds < LEAST_MOVING_S:
         raise LogError(
-            f"{log.name} moves faster than 2 m/s for {seconds:.0f} s, the bicycle model needs {LEAST_MOVING_S:g} s; "
-            "give a drive that moves."
+            f"{log.name} moves faster than 2 m/s for {seconds:.0f} s, but the bicycle model needs {LEAST_MOVING_S:g} "
+            "s; give a drive that moves."
         )
 
 
@@ -85,7 +85,7 @@ def _fast(log: Log, found: Roles) -> Float[np.ndarray, " N"]:
 
 
 def _velocity(log: Log, found: Roles) -> tuple[int, ...]:
-    """Columns of north and east, else of one speed: the wheels', where another sensor than the receiver tells it."""
+    """Columns of north and east velocity, else of one speed: the wheels' speed if another sensor has it more often."""
     if found.north is not None and found.east is not None:
         return found.north, found.east
     assert found.speed is not None
@@ -97,7 +97,7 @@ def _velocity(log: Log, found: Roles) -> tuple[int, ...]:
 
 
 def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: float | None) -> BicycleKalman:
-    """The filter with the mounting of its sensors, and noise still to be fitted."""
+    """The filter with the mounting of its sensors, before the fit of the noise."""
     assert found.position is not None
     steered = found.steering is not None and wheelbase_m is not None
     accelerometer: tuple[int, ...] = found.accelerometer or ()
@@ -108,11 +108,13 @@ def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: fl
     except LogError:
         if not steered:
             raise
-        forward, push = _push(log, found)  # too straight a drive to tell how the gyro sits, but that is not needed
+        forward, push = _push(
+            log, found
+        )  # the drive is too straight to find the gyro's mounting, which is not needed here
     else:
         forward = mounted.thrust * mounted.forward
         push = float(forward @ mounted.accelerometer_bias)
-        turning = -mounted.yaw  # a course counts clockwise, φ the other way round
+        turning = -mounted.yaw  # a course is clockwise, φ anticlockwise
         lean = float(turning @ mounted.gyro_bias)
     if found.steering is not None and wheelbase_m is not None:
         gain, lean = steering(log, found, wheelbase_m)
@@ -142,15 +144,17 @@ def _start(log: Log, found: Roles, wheelbase_m: float | None, steering_ratio: fl
 
 
 def steering(log: Log, found: Roles, wheelbase_m: float) -> tuple[float, float]:
-    """Front wheel angle = gain . steering angle - offset: from how the course turns, by least squares.
+    """Front wheel angle = gain . steering angle - offset, fitted to the course rate by least squares.
 
     l (course rate) / v = tan δ, small angles; anticlockwise is positive. One over `gain` is the steering ratio.
 
     Raises:
-        LogError: no course to learn it from.
+        LogError: the log has no course.
     """
     if found.velocity is None or found.steering is None:
-        raise LogError(f"{log.name} has no course over ground, which the steering ratio is learned from.")
+        raise LogError(
+            f"{log.name} has no course over ground to fit the steering ratio; give steering_ratio in vehicle.toml."
+        )
     first, second = found.velocity
     rows = log.fresh[:, second] & np.isfinite(log.value[:, [first, second]]).all(axis=1)
     a, b = log.value[rows, first], log.value[rows, second]
@@ -175,7 +179,7 @@ def steering(log: Log, found: Roles, wheelbase_m: float) -> tuple[float, float]:
 
 
 def _push(log: Log, found: Roles) -> tuple[Float[np.ndarray, "3"], float]:
-    """Speed rate = f . accelerometer - bias, by least squares over one second; nothing where a channel is missing."""
+    """Speed rate = f . accelerometer - bias, by least squares over one second; zeros if a channel is missing."""
     if found.accelerometer is None or found.speed is None:
         return np.zeros(3), 0.0
     rows = log.fresh[:, found.speed] & np.isfinite(log.value[:, found.speed])
@@ -195,25 +199,25 @@ def _push(log: Log, found: Roles) -> tuple[Float[np.ndarray, "3"], float]:
 def open_loop(
     filter: BicycleKalman, rows: Sample
 ) -> tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"], Float[Array, "T C"]]:
-    """What a filter that trusts everything makes of a log.
+    """Innovations of the filter over a log in which every sample is trusted.
 
-    Innovations along and across the heading and of the velocities, their standard deviations, which there are; and e
-    over √S of each channel, NaN where nothing was measured or the filter had not begun.
+    Returns the innovations along and across the heading and of the velocities, their standard deviations, and whether
+    each exists; and e / √S of each channel, NaN where nothing was measured or the filter had not started.
     """
 
     def one(belief: Belief, sample: Sample) -> tuple[Belief, tuple[Array, Array, Array, Array]]:
         residual, work = filter.evaluate(belief, sample)
-        nobody = jnp.zeros_like(sample.fresh)
-        belief = filter.update(work, Trust(sample.value, sample.fresh, nobody, sample.fresh, sample.born))
+        none = jnp.zeros_like(sample.fresh)
+        belief = filter.update(work, Trust(sample.value, sample.fresh, none, sample.fresh, sample.born))
         whole = jnp.where(residual.valid, residual.value / jnp.sqrt(jnp.diagonal(residual.cov)), jnp.nan)
         return belief, (work.innovation, jnp.sqrt(jnp.diagonal(work.s)), work.there, whole)
 
-    said: tuple[Array, Array, Array, Array] = jax.lax.scan(one, filter.init(), rows)[1]
-    return said
+    traces: tuple[Array, Array, Array, Array] = jax.lax.scan(one, filter.init(), rows)[1]
+    return traces
 
 
 def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
-    """Q, R, lags and the scale of the speed by the likelihood of the innovations, Huber's for their squares."""
+    """Q, R, lags and the scale of the speed by maximum likelihood of the innovations, with Huber's loss."""
     start = int(np.searchsorted(log.time, _first(log, found) - 1.0))
     cut = slice(start, start + MOST_ROWS)
     rows = samples(log.time[cut], log.value[cut], log.fresh[cut])
@@ -245,7 +249,7 @@ def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
 
 
 def _search(loss: Callable[[Float[np.ndarray, "11"]], float]) -> Float[np.ndarray, "11"]:
-    """Pattern search (Hooke & Jeeves 1961): a replay costs a hundredth of compiling its gradient."""
+    """Pattern search (Hooke & Jeeves 1961): compiling the gradient would take as long as a hundred replays."""
     x = np.array([*np.log(START), np.log(0.1), 0.0, 0.0, 0.0])
     step = np.array(FIRST_STEP)
     best = loss(x)
@@ -257,7 +261,7 @@ def _search(loss: Callable[[Float[np.ndarray, "11"]], float]) -> Float[np.ndarra
                 tried[k] += sign * step[k]
                 if (value := loss(tried)) < best:
                     x, best = tried, value
-                    step[k] *= 1.3 * sign  # and this way first the next time
+                    step[k] *= 1.3 * sign  # try this direction first next time
                     break
             else:
                 step[k] /= 2
@@ -273,7 +277,7 @@ def _first(log: Log, found: Roles) -> float:
 
 
 def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
-    """Root mean square of each normalised innovation, without the start and the largest two of a thousand."""
+    """RMS of each normalised innovation, without the start and without the largest 0.2 %."""
     rows = samples(log.time, log.value, log.fresh)
     e, sigma, there, _ = (np.asarray(x) for x in open_loop(filter, rows))
     late = log.time > log.time[0] + WARM_S
@@ -287,7 +291,7 @@ def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
 
 
 def normalised(filter: BicycleKalman, log: Log) -> Float[np.ndarray, "T C"]:
-    """e / √S of each channel, NaN where nothing was measured or the filter had not begun."""
+    """e / √S of each channel, NaN where nothing was measured or the filter had not started."""
 
     rows = samples(log.time, log.value, log.fresh)
     return np.asarray(open_loop(filter, rows)[3])

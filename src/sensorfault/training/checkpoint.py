@@ -1,4 +1,4 @@
-"""A training half done, in one file: safetensors, whole or not at all."""
+"""An unfinished training in one safetensors file, which is written completely or not at all."""
 
 import hashlib
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ Tree = TypeVar("Tree")
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Where a training is written to after each epoch, and read from at its start; nowhere with `path` None.
+    """The file in which a training is saved after every epoch, and from which it resumes; none if `path` is None.
 
-    `training` is a digest of all that decides how the training goes: network, examples, plan and seed.
+    `training`: a digest of everything that determines the training: network, examples, plan and seed.
     """
 
     path: Path | None
@@ -30,7 +30,7 @@ class Checkpoint:
 
     @classmethod
     def of(cls, path: Path | None, now: Any, *decides: Any) -> "Checkpoint":
-        """For the training that `decides` makes: arrays by their contents, all else by its printed form."""
+        """For the training determined by `decides`: arrays by their contents, all else by its printed form."""
         digest = hashlib.sha256(str(jax.tree.structure((now, decides))).encode())
         for leaf in jax.tree.leaves(decides):
             part = np.asarray(leaf) if isinstance(leaf, np.ndarray | jax.Array) else np.array(repr(leaf))
@@ -38,19 +38,19 @@ class Checkpoint:
         return cls(path, digest.hexdigest())
 
     def write(self, now: Any, learned: list[float], validated: list[float]) -> None:
-        """Put down where the training stands."""
+        """Save the state of the training."""
         if self.path is None:
             return
         tensors = {str(i): np.asarray(leaf) for i, leaf in enumerate(jax.tree.leaves(now))}
-        result = {"learned": np.array(learned), "validated": np.array(validated)}
+        errors = {"learned": np.array(learned), "validated": np.array(validated)}
         with appearing(self.path) as temporary:
-            save_file(tensors | result, temporary, {"format": FORMAT, "training": self.training})
+            save_file(tensors | errors, temporary, {"format": FORMAT, "training": self.training})
 
     def resumed(self, now: Tree) -> tuple[Tree, list[float], list[float]]:
-        """The training as it was last written, or `now` and no errors if it never was.
+        """The training as last saved, or `now` and no errors if there is no file.
 
         Raises:
-            LogError: the file is no checkpoint, or one of another training.
+            LogError: the file is not a checkpoint, or is one of another training.
         """
         if self.path is None or not self.path.exists():
             return now, [], []

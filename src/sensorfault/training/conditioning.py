@@ -1,4 +1,4 @@
-"""Linear conditioning: what the newest row owes to the ones before it, from their joint covariance."""
+"""Linear conditioning: predict the newest row from the rows before it, by their joint covariance."""
 
 from itertools import pairwise
 
@@ -11,12 +11,12 @@ from jaxtyping import Bool, Float
 from sensorfault.stages.residual.conditioning import Conditioning
 
 LAGS = 4
-BOUND = 3.0  # conditional sigmas; of 2, 3, 4 the one at which neither real drive loses
-RIDGE = 1e-8  # of a channel's variance: for channels that follow from each other
+BOUND = 3.0  # conditional sigmas; of 2, 3 and 4 the best compromise on two real drives
+RIDGE = 1e-8  # share of a channel's variance, for channels that depend on each other
 
 
 def unbroken(time: Float[np.ndarray, " T"], complete: Bool[np.ndarray, " T"], lags: int) -> Bool[np.ndarray, " T"]:
-    """Rows that are complete, as are the `lags` before them, with no hole in the clock between."""
+    """Complete rows after `lags` complete rows, without a gap in the clock."""
     step = np.diff(time)
     joined = np.concatenate([[False], step < 1.5 * np.median(step)]) & complete
     joined[1:] &= complete[:-1]
@@ -36,10 +36,10 @@ def fit_conditioning(
     bound: float = BOUND,
     levels: bool = True,
 ) -> Conditioning:
-    """From healthy rows [SI] on one clock; `complete`: those that hold every watched channel.
+    """Fit on healthy rows [SI] of one clock; `complete`: rows that have every watched channel.
 
-    Without `levels` the change of a row is regressed on the changes before it: an offset that lasts is then the
-    channel's own, and moves what is expected of no other.
+    Without `levels` the change of a row is regressed on the changes before it: a lasting offset of one channel then
+    does not shift what is expected of the others.
     """
     channels = len(watched)
     tick_s = float(np.median(np.diff(time)))

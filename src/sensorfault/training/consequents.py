@@ -1,4 +1,4 @@
-"""What fuzzy rules with given premises say best: their consequents by least squares."""
+"""The consequents of fuzzy rules with given premises, by least squares."""
 
 from typing import NamedTuple
 
@@ -8,11 +8,11 @@ from jaxtyping import Float
 from sensorfault.numerics.fuzzy import MEMBERSHIPS, Premises, strengths
 from sensorfault.training.elm import ridge
 
-RIDGE = 1e-6  # two features may be one, and few rows may call for a rule
+RIDGE = 1e-6  # two features may be equal, and a rule may apply to few rows
 
 
 class Numbers(NamedTuple):
-    """What is trained of premises, or the slope of the error over it. A tuple: equinox would take most of the time."""
+    """The trained numbers of premises, or the gradient of the error. A tuple, because equinox would be slow here."""
 
     center: Float[np.ndarray, " P"]
     width: Float[np.ndarray, " P"]
@@ -24,7 +24,7 @@ class Numbers(NamedTuple):
 
 
 class Lesson(NamedTuple):
-    """Scaled features, with 1 behind them and as each membership sees them, and what is to be said of them.
+    """Training data: `one`, scaled features and a column of ones; `seen`, the input of each membership; `y`, targets.
 
     `asked`, `kind`: as in Premises. `ridge`: penalty on the consequents for each row.
     """
@@ -40,13 +40,13 @@ class Lesson(NamedTuple):
     def of(
         cls, premises: Premises, x: Float[np.ndarray, "N F"], y: Float[np.ndarray, " N"], ridge: float = RIDGE
     ) -> "Lesson":
-        """For rules that look at x as these premises do."""
+        """For rules with the inputs and memberships of these premises."""
         one = np.column_stack([x, np.ones(len(x))])
         return cls(one, x[:, premises.inputs], y, premises.asked(), premises.kind, ridge)
 
 
 class Solved(NamedTuple):
-    """The best that rules can say, and what that leaves of the lesson; t = (x - c) / a."""
+    """The best consequents, the output of each rule (`says`) and the error (`left`); t = (x - c) / a."""
 
     t: Float[np.ndarray, "N P"]
     grades: Float[np.ndarray, "N P"]
@@ -57,12 +57,12 @@ class Solved(NamedTuple):
 
     @property
     def error(self) -> float:
-        """Root mean square."""
+        """RMS of `left`."""
         return float(np.sqrt(np.mean(self.left**2)))
 
 
 def solve(numbers: Numbers, lesson: Lesson, consequents: Float[np.ndarray, "R D"] | None = None) -> Solved:
-    """Layers 1 to 5, the consequents by ridge regression where none are given. Xu et al. 2023, (21)-(25)."""
+    """Layers 1 to 5; consequents by ridge regression if none are given. Xu et al. 2023, (21)-(25)."""
     t = (lesson.seen - numbers.center) / numbers.width
     grades = MEMBERSHIPS[lesson.kind](t, numbers.slope)
     weights = strengths(grades @ lesson.asked.T)

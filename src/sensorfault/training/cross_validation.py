@@ -1,4 +1,4 @@
-"""How a reconstruction errs on healthy rows that it was not fitted on."""
+"""The error of a reconstruction on healthy rows that it was not fitted on."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -17,7 +17,7 @@ Fit = Callable[[Float[np.ndarray, "N C"], Scaling], Reconstruction]
 
 
 def residual_of(found: Reconstruction, value: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
-    """What a fitted network leaves of each row [SI]."""
+    """Residual of a fitted network for each row [SI]."""
     half = np.asarray(found.half)
     x = (value - np.asarray(found.center)) / half
     # (3), (4) x~ = f(x W' + b) beta
@@ -29,9 +29,10 @@ def residual_of(found: Reconstruction, value: Float[np.ndarray, "N C"]) -> Float
 def largest_unseen_norm(
     value: Float[np.ndarray, "N C"], watched: Bool[np.ndarray, " C"], fit: Fit, scale: Float[np.ndarray, " C"]
 ) -> float:
-    """Largest norm of residual / scale over contiguous blocks, each judged by a fit on all the others.
+    """Largest norm of residual / scale over contiguous blocks, each tested with a fit on all other blocks.
 
-    A network that copies what it has seen errs far more just outside: its largest training error says little of that.
+    A network that copies its training data has much larger errors just outside them; its largest training error does
+    not show that.
     """
     norms = []
     for block in np.array_split(np.arange(len(value)), BLOCKS):

@@ -1,4 +1,4 @@
-"""How noisy dead reckoning and ranges are: what makes the innovations of a healthy log likeliest."""
+"""Noise of dead reckoning and ranges, by maximum likelihood of the innovations of a healthy log."""
 
 from collections.abc import Callable
 
@@ -12,19 +12,19 @@ from sensorfault.core.types import Report, Sample
 from sensorfault.logs.table import Log
 from sensorfault.runtime.runners import replay, samples
 
-HEAVY = 4.0  # degrees of freedom of the law that innovations are taken to follow: wild ones hardly count
-NARROW = 0.8310  # its scale, fitted to Gaussian numbers, over theirs: E (ν + 1) z² / (ν + z²) = 1 for z = N(0, 1) / s
-UNTOLD = 100.0  # times its own variance: a noise that leaves a range out
+HEAVY = 4.0  # degrees of freedom of Student's t distribution for the innovations: outliers hardly count
+NARROW = 0.8310  # scale s of this distribution fitted to N(0, 1): E (ν + 1) z² / (ν + z²) = 1 for z = N(0, 1) / s
+IGNORED = 100.0  # a range whose noise is larger than so many times its variance is ignored
 START = (0.1, 3.0)  # [m²/s], [m]
-ROUND = 256  # rows
+ROUND = 256  # the number of rows is rounded up to a multiple of this
 BOUNDS = ((1e-4, 10.0), (0.01, 50.0))
 
 
 def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], log: Log) -> tuple[float, float]:
     """Variance that a second of dead reckoning adds [m²/s] and standard deviation of a range [m].
 
-    `build(q, sigma)` gives a monitor whose limits are off. The likelihood is that of Student's law, so that the ranges
-    may have their outliers.
+    `build(q, sigma)` gives a monitor with its limits off. The likelihood is that of Student's t distribution, so that
+    outliers hardly count.
     """
     from scipy.optimize import minimize  # lazily: slow to import, and seldom needed
 
@@ -40,7 +40,7 @@ def likeliest(build: Callable[[Float[Array, ""], Float[Array, ""]], Monitor], lo
 
 
 def _filled(log: Log) -> Sample:
-    """The log, and rows in which nothing comes up to a round number, so that one compilation serves many logs."""
+    """The log, filled up with empty rows to a multiple of ROUND, so that one compilation serves many logs."""
     after = (0, -len(log) % ROUND)
     value = np.pad(log.value, (after, (0, 0)), constant_values=np.nan)
     return samples(np.pad(log.time, after, "edge"), value, np.pad(log.fresh, (after, (0, 0))))
@@ -56,5 +56,5 @@ def _loss(report: Report) -> Float[Array, ""]:
     s = jnp.diagonal(residual.cov)
     # -2 log p = log S + (ν + 1) log(1 + r² / ν S)
     loss = jnp.log(s) + (HEAVY + 1) * jnp.log1p(residual.value**2 / (HEAVY * s))
-    result = residual.valid & (residual.noise < UNTOLD * s)  # an exact repeat, which has no weight, says nothing
-    return jnp.where(result, loss, 0.0).sum()
+    informative = residual.valid & (residual.noise < IGNORED * s)  # an exact repeat has no weight
+    return jnp.where(informative, loss, 0.0).sum()

@@ -1,4 +1,4 @@
-"""What the deficits of position and velocity are on a healthy drive."""
+"""The deficits of position and velocity on a healthy drive."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -14,16 +14,16 @@ from sensorfault.logs.table import Log
 from sensorfault.stages.residual.motion_deficit import MotionDeficit
 from sensorfault.stages.residual.velocity_deficit import VelocityDeficit
 
-TIMES = (1.0, 2.0, 4.0, 8.0)  # ages of references over which a law is learned, in horizons
-SLOTS = 32  # of the trail while learning
-FINEST_M = 0.1  # no receiver is believed to be better
+TIMES = (1.0, 2.0, 4.0, 8.0)  # ages of the references on which a law is fitted, in horizons
+SLOTS = 32  # stored references during the fit
+FINEST_M = 0.1  # no receiver is assumed to be better
 FINEST_M_S = 0.03
 
 
 def fit_deficit(part: MotionDeficit, log: Log) -> MotionDeficit:
-    """With the laws of a healthy drive: variance of the deficit [m^2] = law . (1, swing^2, path^2, age^2).
+    """Fit the laws on a healthy drive: variance of the deficit [m^2] = law . (1, swing^2, path^2, age^2).
 
-    That of each horizon is learned on references up to eight times as old; none grows more slowly with age than that
+    The law of each horizon is fitted on references up to eight times as old; none grows more slowly with age than that
     of the longest.
     """
     laws = np.stack([_law(part, log, float(horizon) * np.array(TIMES)) for horizon in np.asarray(part.horizon_s)])
@@ -33,9 +33,9 @@ def fit_deficit(part: MotionDeficit, log: Log) -> MotionDeficit:
 
 
 def fit_velocity(part: VelocityDeficit, log: Log) -> VelocityDeficit:
-    """With the mean square of the slip on a healthy drive."""
-    result = extra_tape(part, log)
-    slip = result.slip[result.ready]
+    """Fit the mean square of the slip on a healthy drive."""
+    tape = extra_tape(part, log)
+    slip = tape.slip[tape.ready]
     variance = (slip**2).mean(axis=0) if len(slip) else np.ones(2)
     fitted: VelocityDeficit = eqx.tree_at(lambda p: p.variance, part, jnp.asarray(np.maximum(variance, FINEST_M_S**2)))
     return fitted
@@ -54,16 +54,14 @@ def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[
         channels=part.channels,
         slots=SLOTS,
     )
-    result = extra_tape(wide, log)
-    ready = result.ready
+    tape = extra_tape(wide, log)
+    ready = tape.ready
     if not ready.any():
         return np.array([FINEST_M**2, 0.0, 0.0, 0.0])
-    square = (result.deficit[ready] ** 2).sum(axis=1)
-    terms = np.stack(
-        [np.ones_like(square), result.swing[ready] ** 2, result.path[ready] ** 2, result.age[ready] ** 2], 1
-    )
-    # a square scatters in proportion to its own expectation; what is far below the usual is no finer a measure
-    usual = max(square[result.age[ready] < 2 * ages[0]].mean(), FINEST_M**2)
+    square = (tape.deficit[ready] ** 2).sum(axis=1)
+    terms = np.stack([np.ones_like(square), tape.swing[ready] ** 2, tape.path[ready] ** 2, tape.age[ready] ** 2], 1)
+    # the scatter of a square is proportional to its expectation; the floor keeps small ones from dominating
+    usual = max(square[tape.age[ready] < 2 * ages[0]].mean(), FINEST_M**2)
     weight = np.ones(len(square))
     law = np.zeros(4)
     for _ in range(10):
@@ -73,7 +71,7 @@ def _law(part: MotionDeficit, log: Log, ages: Float[np.ndarray, " n"]) -> Float[
 
 
 def not_negative(a: Float[np.ndarray, "N n"], b: Float[np.ndarray, " N"]) -> Float[np.ndarray, " n"]:
-    """Least squares with no negative coefficient, for a handful of them: the best of all subsets that has none."""
+    """Least squares with non-negative coefficients, for a few of them: the best subset without a negative one."""
     n = a.shape[1]
     gram, right = a.T @ a, a.T @ b
     best, found = 0.0, np.zeros(n)

@@ -1,4 +1,4 @@
-"""What the difference of two heights is on a healthy flight: the lag of one behind the other, and its spread."""
+"""The difference of two heights on a healthy flight: the lag of one behind the other, and its spread."""
 
 from dataclasses import replace
 
@@ -9,16 +9,16 @@ from sensorfault.calibration.open_loop import extra_tape
 from sensorfault.logs.table import Log, LogError
 from sensorfault.stages.residual.difference import Difference
 
-APART = 10  # beats: what wanders over minutes is no lag
-LONGEST_S = 3.0  # no barometer and no receiver is later
+APART = 10  # changes are taken over so many beats, so that slow changes of the offset do not count as lag
+LONGEST_S = 3.0  # no barometer or receiver has a larger lag [s]
 LEAST_BEATS = 60
 FINEST_M = 0.01
 
 
 def fit_difference(part: Difference, log: Log, lagging: bool = True) -> Difference:
-    """With the lag that makes the difference least when the reference moves, and with its variance around its mean.
+    """Fit the lag that makes the difference smallest while the reference moves, and the variance around the mean.
 
-    `lagging` False: both are taken to show the same moment.
+    `lagging` False: no lag.
 
     Raises:
         LogError: too few beats with both sensors.
@@ -28,7 +28,7 @@ def fit_difference(part: Difference, log: Log, lagging: bool = True) -> Differen
     if len(d) < LEAST_BEATS:
         raise LogError(
             f"{log.name} has {len(d)} beats of {float(part.beat_s):g} s with both {log.channels[part.measured].path} "
-            f"and {log.channels[part.reference].path}, their difference needs {LEAST_BEATS}; give it a longer flight."
+            f"and {log.channels[part.reference].path}, but {LEAST_BEATS} are needed; give a longer flight."
         )
     lag = _lag(d, speed) if lagging else 0.0
     variance = max(float(np.var(d - lag * speed)), FINEST_M**2)

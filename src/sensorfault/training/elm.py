@@ -8,7 +8,7 @@ from jaxtyping import Float
 from sensorfault.calibration.scaling import Scaling
 from sensorfault.stages.residual.reconstruction import Reconstruction
 
-BLOCK = 1024  # rows that stay in the processor's cache from one step to the next: the fit takes a third of the time
+BLOCK = 1024  # rows; a block stays in the processor's cache, so the fit takes a third of the time
 
 
 def _blocks(rows: int) -> Iterator[slice]:
@@ -16,7 +16,7 @@ def _blocks(rows: int) -> Iterator[slice]:
 
 
 def ridge(hidden: Float[np.ndarray, "N L"], target: Float[np.ndarray, "N D"], c: float) -> Float[np.ndarray, "L D"]:
-    """beta = H'(I/C + HH')^-1 X, solved in the smaller of its two sizes. Min et al. 2021, equation (7).
+    """beta = H'(I/C + HH')^-1 X, solved in the smaller of two equivalent forms. Min et al. 2021, equation (7).
 
     For N > L it is the same as (I/C + H'H)^-1 H'X, an L by L system.
     """

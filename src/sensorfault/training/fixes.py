@@ -1,4 +1,4 @@
-"""A log of an aircraft from one new height to the next, as the multi-step observer steps through it."""
+"""The new heights of an aircraft's log, through which the multi-step observer steps."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.runtime.model import MISSED, hold_s
 
 LEAST_FIXES = 50
-GAP_S = 2.0  # over so long a roll-out goes on, whatever the rate of the heights
+GAP_S = 2.0  # a roll-out continues over a gap of at least this length, whatever the rate of the heights [s]
 
 
 @dataclass(frozen=True)
 class Fixes:
-    """New heights and the inputs then, the last that were known.
+    """New heights, and the last known inputs at these times.
 
-    `period_s`: the usual time between two; a gap of more than `gap_s` breaks the row, as does an unknown input.
+    A gap of more than `gap_s` or an unknown input ends a run of heights.
     """
 
     time: Float[np.ndarray, " T"]  # [s]
@@ -28,7 +28,7 @@ class Fixes:
 
     @classmethod
     def of(cls, log: Log, height: int, columns: tuple[int, ...]) -> "Fixes":
-        """Out of a healthy log; `columns` of the inputs.
+        """From a healthy log; `columns`: of the inputs.
 
         Raises:
             LogError: too few heights.
@@ -36,7 +36,7 @@ class Fixes:
         new = log.fresh[:, height] & np.isfinite(log.value[:, height])
         if new.sum() < LEAST_FIXES:
             raise LogError(
-                f"{log.name} has {new.sum()} measurements of {log.channels[height].path}, the observer needs "
+                f"{log.name} has {new.sum()} measurements of {log.channels[height].path}, but the observer needs "
                 f"{LEAST_FIXES}; give it more data."
             )
         period_s = float(np.median(np.diff(log.time[new])))
@@ -46,11 +46,11 @@ class Fixes:
 
     @property
     def period_s(self) -> float:
-        """The usual time between two heights [s]."""
+        """Median time between two heights [s]."""
         return float(np.median(np.diff(self.time)))
 
     def windows(self, steps: int) -> Int[np.ndarray, " W"]:
-        """First rows of all windows of so many steps without a break."""
+        """First rows of all windows of so many steps without a gap."""
         known = np.isfinite(self.inputs).all(axis=1)
         good = (np.diff(self.time) <= self.gap_s) & known[1:] & known[:-1]
         run = np.concatenate([[0], np.cumsum(good)])
@@ -58,7 +58,7 @@ class Fixes:
         return np.asarray(first[run[first + steps] - run[first] == steps])
 
     def scale(self) -> tuple[Float[np.ndarray, " V"], Float[np.ndarray, " V"], float]:
-        """Middle and half of the range of height and inputs, and the spread of an increment of one period."""
+        """Middle and half-width of the range of height and inputs, and the spread of an increment in one period."""
         seen = np.column_stack([self.height, self.inputs])
         low, high = np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)
         half = np.where(high > low, (high - low) / 2, 1.0)
@@ -69,12 +69,12 @@ class Fixes:
 
 
 def gap(period_s: float, tick_s: float) -> float:
-    """How long a height may be silent before the past is void [s]; half a tick allows for jitter."""
+    """After a silence of the height longer than this the past is discarded [s]; half a tick allows for jitter."""
     return max(MISSED * period_s, GAP_S) + tick_s / 2
 
 
 def _held(log: Log, column: int) -> Float[np.ndarray, " T"]:
-    """The last value of a channel, for as long as it stands; NaN before the first and after."""
+    """The last value of a channel while it is valid; NaN before the first value and after it expires."""
     came = log.fresh[:, column] & np.isfinite(log.value[:, column])
     last = np.maximum.accumulate(np.where(came, np.arange(len(log)), -1))
     stands = (last >= 0) & (log.time - log.time[last] <= hold_s(log)[column])

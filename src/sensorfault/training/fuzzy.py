@@ -1,4 +1,4 @@
-"""ANFIS: fuzzy rules that foretell the error of a measurement, learned from measurements whose error is known."""
+"""ANFIS: fuzzy rules that predict the error of a measurement, learned from measurements with known errors."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -20,10 +20,10 @@ from sensorfault.training.population import population
 
 @dataclass(frozen=True)
 class Setting:
-    """How the rules begin and how they are trained. The defaults are the paper's, as far as it says.
+    """How the rules are initialised and trained. The defaults are the paper's, as far as it gives them.
 
     `memberships` on each input of a grid; `rules` of a scatter; `radius` of a subtractive cluster; `kind`: of the
-    memberships. `log`, `reach`: see UnitRange; `ridge`: see Lesson. `epochs` with steps of first length `step`, or as
+    memberships. `log`, `reach`: see UnitRange; `ridge`: see Lesson. `epochs` with steps of initial length `step`, or as
     many generations.
     """
 
@@ -53,10 +53,10 @@ class Setting:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The inference of the best epoch, and that of the rules as they began, with consequents of their own.
+    """The model of the best epoch, and the model with untrained premises (with its own consequents).
 
-    `learned`, `validated`: root mean square errors by epoch, before the first step first. `rmse` of the best epoch, on
-    the rows learned from: the paper's σ, of which its limit T2 is 3.
+    `learned`, `validated`: RMS errors by epoch; the first is before any step. `rmse`: of the best epoch, on
+    the training rows; the paper's σ, and its limit T2 is 3 σ.
     """
 
     model: Anfis
@@ -76,10 +76,10 @@ def fit_anfis(
     """Learn the size of the error from the features. Xu et al. 2023, section 2; Jang 1993.
 
     `features`: sizes in their own units, as numerics/innovation.py has them. `target`: |error| [m], equation (26).
-    `unseen`: rows that the best epoch is chosen by.
+    `unseen`: validation rows, which select the best epoch.
 
     Raises:
-        LogError: too few rows, or some that are not finite.
+        LogError: too few rows, or rows that are not finite.
     """
     checked(features, target)
     unit = unit_range(features, setting.log, setting.reach)

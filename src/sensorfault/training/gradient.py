@@ -1,7 +1,7 @@
-"""Training by gradient: Adam on shuffled batches until the error on rows not learned from stops falling.
+"""Training by gradient: Adam on shuffled batches until the error on validation rows stops falling.
 
-An epoch is one compiled scan. What the chances are in an epoch follows from the seed and its number alone, so that a
-training that goes on from a checkpoint ends where it would have ended without the break, to the bit.
+An epoch is one compiled scan. The shuffling of an epoch depends only on the seed and the epoch's number, so a training
+that is resumed from a checkpoint gives the same result to the bit.
 """
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
@@ -23,17 +23,17 @@ from sensorfault.training.checkpoint import Checkpoint
 from sensorfault.training.session import SILENT, Session
 from sensorfault.training.windows import OnDevice, Windows
 
-LEAST = 20  # windows on each side of the split
-CHUNK = 1024  # windows judged at a time
+LEAST = 20  # windows needed on each side of the split
+CHUNK = 1024  # windows evaluated at a time
 
 Net = TypeVar("Net", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How to train: `epochs` at most; `patience`: epochs without a lower validation error before it ends.
+    """The training plan: at most `epochs`; it ends after `patience` epochs without a lower validation error.
 
-    `validation`: share of the windows, the last ones in time, that are not learned from. `rate` is Adam's; it is
+    `validation`: share of the windows for validation, the last ones in time. `rate`: Adam's learning rate; it is
     multiplied by `slower` whenever half of the patience is used up.
     """
 
@@ -47,7 +47,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Trained(Generic[Net]):
-    """The network of the epoch with the lowest validation error (mean square, (12)), and all errors by epoch."""
+    """The network of the epoch with the lowest validation error, and the mean square errors (12) of all epochs."""
 
     net: Net
     best_epoch: int
@@ -59,7 +59,7 @@ def train(net: Net, windows: Windows, plan: Plan, seed: int, session: Session = 
     """Minimise the mean square error of `net` on the windows. Min et al. 2021, equation (12).
 
     Raises:
-        LogError: too few windows, or a checkpoint of another training.
+        LogError: too few windows, or the checkpoint is of another training.
     """
     learn, validate = split(windows, plan.validation)
     examples, unseen = learn.on_device(), validate.on_device()
@@ -79,14 +79,14 @@ def train(net: Net, windows: Windows, plan: Plan, seed: int, session: Session = 
             best, now = epoch, now._replace(best=now.net)
         elif (epoch - best) % max(plan.patience // 2, 1) == 0:
             now = now._replace(rate=now.rate * plan.slower)
-        session.tell(f"epoch {epoch} of at most {plan.epochs}, validation error {np.sqrt(validated[-1]):.3g}")
+        session.progress(f"epoch {epoch} of at most {plan.epochs}, validation error {np.sqrt(validated[-1]):.3g}")
         saved.write(now, learned, validated)
     found = jax.tree.map(lambda x: jnp.asarray(x, float), now.best)
     return Trained(found, best, tuple(learned), tuple(validated))
 
 
 def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
-    """The first windows to learn from, and the last `share` of them to stop by, with one window left out between.
+    """The first windows for training and the last `share` of them for validation, with one window length between them.
 
     Raises:
         LogError: too few windows.
@@ -94,13 +94,14 @@ def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
     order = np.argsort(windows.first, kind="stable")
     cut = round(len(order) * (1 - share))
     start = windows.first[order[min(cut, len(order) - 1)]] if len(order) else 0
-    # The last row that a window asks for is the one after it; a whole window lies between it and the first one judged.
+    # The last row that a window uses is the one after it; a whole window lies between it and the first validation
+    # window.
     before = order[windows.first[order] + 2 * windows.length < start]
     after = order[cut:]
     if min(len(before), len(after)) < LEAST:
         raise LogError(
-            f"{len(order)} windows of {windows.length} rows are too few to learn from, {len(before)} besides "
-            f"{len(after)} to stop by, where {LEAST} of each are needed; give a longer log."
+            f"{len(order)} windows of {windows.length} rows are too few: {len(before)} for training and {len(after)} "
+            f"for validation, but {LEAST} of each are needed; give a longer log."
         )
     learn, judge = (
         windows._replace(first=windows.first[rows], target=windows.target[rows]) for rows in (before, after)
@@ -109,7 +110,7 @@ def split(windows: Windows, share: float) -> tuple[Windows, Windows]:
 
 
 class Now(NamedTuple):
-    """Where a training stands; all of it in float32."""
+    """The state of a training, all in float32."""
 
     net: Any
     optimiser: Any
@@ -136,7 +137,7 @@ def _loss(net: Callable[..., Any], x: Float32[Array, "s C B"], y: Float32[Array,
 def one_epoch(
     now: Now, examples: OnDevice, batches: Int32[Array, "K B"], length: int
 ) -> tuple[Now, Float32[Array, ""]]:
-    """One pass over the batches: the training after it, and the mean error met on the way."""
+    """One pass over the batches: the new state, and the mean error during the pass."""
 
     def step(carry: tuple[Any, Any], chosen: Int32[Array, " B"]) -> tuple[tuple[Any, Any], Float32[Array, ""]]:
         net, state = carry

@@ -1,4 +1,4 @@
-"""Noise of the height's Kalman filter, from a healthy log."""
+"""Fit the noise of the height's Kalman filter on a healthy log."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -19,17 +19,17 @@ from sensorfault.training.fixes import Fixes
 from sensorfault.training.online import noise
 from sensorfault.vehicles.fixed_wing import Roles
 
-LEAST_M, LEAST_MPS = 0.02, 0.02  # no sensor is taken to be better
-WANDER_S = 10.0  # over so long the barometer's bias is seen to wander
+LEAST_M, LEAST_MPS = 0.02, 0.02  # no sensor is assumed to be better
+WANDER_S = 10.0  # the random walk of the barometer's bias is measured over this time [s]
 FORCE_WANDER = 1e-4  # variance that a second adds to the accelerometer's bias [(m/s^2)^2]
-PUSHED = 0.5  # standard deviation of the upward acceleration that an inertial unit leaves unsaid [m/s^2]
+PUSHED = 0.5  # standard deviation of the upward acceleration that an inertial unit does not measure [m/s^2]
 
 
 def fit_height_kalman(log: Log, height: int, roles: Roles) -> HeightKalman:
-    """The filter of this height, with what the log has besides: climb, barometer, inertial unit with pitch and roll.
+    """The filter of this height, with the log's other channels: climb rate, barometer, inertial unit with attitude.
 
-    Noise from third differences, wandering from increments; then all variances times what makes the mean square of the
-    height's normalised innovation 1, which leaves the filter's gain as it was.
+    Measurement noise comes from third differences, process noise from increments. Then all variances are scaled so that
+    the mean square of the height's normalised innovation is 1, which does not change the filter's gain.
 
     Raises:
         LogError: too few heights.
@@ -65,25 +65,25 @@ def fit_height_kalman(log: Log, height: int, roles: Roles) -> HeightKalman:
 
 
 def normalised(filter: HeightKalman, log: Log) -> Float[np.ndarray, " T"]:
-    """ν / √S of the height on a log that is believed throughout; NaN where nothing was tested."""
-    value, cov, valid = _told(filter, samples(log.time, log.value, log.fresh))
+    """ν / √S of the height over a log in which every sample is trusted; NaN where nothing was tested."""
+    value, cov, valid = _open_loop(filter, samples(log.time, log.value, log.fresh))
     c = filter.outputs[0]
     return np.where(np.asarray(valid)[:, c], np.asarray(value)[:, c] / np.sqrt(np.asarray(cov)[:, c, c]), np.nan)
 
 
 @jax.jit
-def _told(filter: HeightKalman, rows: Sample) -> tuple[Array, Array, Array]:
+def _open_loop(filter: HeightKalman, rows: Sample) -> tuple[Array, Array, Array]:
     def one(state: Any, sample: Sample) -> tuple[Any, tuple[Array, Array, Array]]:
         residual, pending = filter.evaluate(state, sample)
         trust = Trust(sample.value, sample.fresh, sample.fresh & False, sample.fresh, sample.born)
         return filter.update(pending, trust), (residual.value, residual.cov, residual.valid)
 
-    result: tuple[Array, Array, Array] = lax.scan(one, filter.init(), rows)[1]
-    return result
+    traces: tuple[Array, Array, Array] = lax.scan(one, filter.init(), rows)[1]
+    return traces
 
 
 def _pushed(fixes: Fixes, measured: bool, r: Float[np.ndarray, " O"]) -> float:
-    """What a second adds to the variance of the climb [(m/s)^2]: from the measured one, else from the height."""
+    """What a second adds to the variance of the climb rate [(m/s)^2], from the measured climb rate, else the height."""
     if measured:
         climb, own = fixes.inputs[:, 1], r[1]
     else:

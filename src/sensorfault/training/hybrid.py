@@ -1,4 +1,4 @@
-"""Jang's hybrid training: what rules say by least squares, forward; when they apply by gradient, backward."""
+"""Jang's hybrid training of fuzzy rules: consequents by least squares (forward), premises by gradient (backward)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ GROW, SHRINK, RUN = 1.1, 0.9, 4  # Jang 1993, section III
 
 
 def slope(numbers: Numbers, lesson: Lesson, solved: Solved) -> Numbers:
-    """∂E/∂(c, a, b), E the mean square error; the consequents stay, which at their best changes nothing."""
+    """∂E/∂(c, a, b), E the mean square error, with fixed consequents: at their optimum their change does not matter."""
     e, t = solved.left, solved.t
     # ∂E/∂ln w_r = 2 e w_r (f_r - f) / N
     fired = 2 / len(e) * e[:, None] * solved.weights * (solved.says - (e + lesson.y)[:, None])
@@ -58,7 +58,7 @@ STEEPNESS: dict[str, Callable[[_Grades, Float[np.ndarray, " P"], _Grades], tuple
 
 
 def stepped(numbers: Numbers, down: Numbers, size: float) -> Numbers:
-    """A step of this length against the slope, kept within bounds. Jang 1993, equation (11)."""
+    """A step of this length against the gradient, kept within bounds. Jang 1993, equation (11)."""
     norm = np.sqrt(sum((part**2).sum() for part in down))
     if not norm > 0:
         return numbers
@@ -68,14 +68,14 @@ def stepped(numbers: Numbers, down: Numbers, size: float) -> Numbers:
 
 @dataclass
 class StepRule:
-    """Jang's: after four decreases in a row 10 % longer, after two times up and down 10 % shorter."""
+    """Jang's step size rule: 10 % longer after four decreases in a row, 10 % shorter after two ups and downs."""
 
     size: float
     grown: int = 0
     shrunk: int = 0
 
-    def hear(self, errors: Sequence[float]) -> None:
-        """All errors so far, the newest last."""
+    def adapt(self, errors: Sequence[float]) -> None:
+        """Adapt the step to all errors so far, the newest last."""
         now = len(errors)
         change = np.sign(np.diff(errors[-RUN - 1 :]))
         if len(change) < RUN:
@@ -87,7 +87,7 @@ class StepRule:
 
 
 class Course(NamedTuple):
-    """The best premises and what they say; errors by epoch."""
+    """The best premises and their consequents; errors by epoch."""
 
     numbers: Numbers
     consequents: Float[np.ndarray, "R D"]
@@ -97,7 +97,7 @@ class Course(NamedTuple):
 
 
 def hybrid(numbers: Numbers, lesson: Lesson, unseen: Lesson | None, epochs: int, step: float) -> Course:
-    """So many epochs; the best is that of the least error on `unseen`, or without it on the lesson."""
+    """Train for `epochs`; the best epoch has the smallest error on `unseen`, or without it on the lesson."""
     rule = StepRule(step)
     learned, validated = list[float](), list[float]()
     best, says, least = 0, np.zeros(0), np.inf
@@ -110,6 +110,6 @@ def hybrid(numbers: Numbers, lesson: Lesson, unseen: Lesson | None, epochs: int,
         error = validated[-1] if validated else learned[-1]
         if error < least:
             best, found, says, least = epoch, numbers, solved.consequents, error
-        rule.hear(learned)
+        rule.adapt(learned)
         numbers = stepped(numbers, slope(numbers, lesson, solved), rule.size)
     return Course(found, says, tuple(learned), tuple(validated), best)

@@ -1,4 +1,4 @@
-"""Networks before training: random weights of the usual size."""
+"""Networks before training, with random weights of the usual size."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -29,7 +29,7 @@ def _layer(random: np.random.Generator, inputs: int, cells: int) -> LstmLayer:
 
 
 def new_lstm(seed: int, inputs: int, outputs: int, cells: tuple[int, ...] = (16, 16)) -> Lstm:
-    """Layers of so many cells."""
+    """An LSTM with `cells` in each layer."""
     random = np.random.default_rng(seed)
     widths = (inputs, *cells)
     layers = tuple(_layer(random, into, size) for into, size in zip(widths, cells, strict=False))

@@ -1,4 +1,4 @@
-"""How much there must be to learn from: what is learned from parts of the labelled rows, judged on others."""
+"""Learning curve: how good a model is that is trained on part of the labelled rows, tested on other rows."""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar
@@ -24,17 +24,17 @@ def learning_curve(
     draws: int = 5,
     seed: int = 0,
 ) -> list[tuple[int, Result]]:
-    """Each size, the least first, and judge(answers, targets) on the test rows of what so many rows teach.
+    """Each size in rising order, with judge(answers, targets) on the test rows for a model trained on so many rows.
 
-    Rows are drawn by chance, those of one size among those of the next, so that a curve shows what more rows add.
-    Nothing is told where a draw cannot be learned from (no anomaly among 25 rows, say).
+    Rows are drawn at random, and a larger draw contains the smaller ones, so a curve shows what more rows add. A draw
+    that cannot be trained on (for example no anomaly among 25 rows) has no result.
 
     Raises:
         LogError: fewer rows than the largest size.
     """
     rows = len(learn.target)
     if max(sizes) > rows:
-        raise LogError(f"{rows} labelled rows are fewer than {max(sizes)}; give more, or learn from fewer.")
+        raise LogError(f"{rows} labelled rows are fewer than {max(sizes)}; give more rows, or smaller sizes.")
     result = list[tuple[int, Result]]()
     for d in range(draws):
         order = np.random.default_rng((seed, d)).permutation(rows)

@@ -1,4 +1,4 @@
-"""Logistic regression: the odds that a measurement is off, learned from measurements of which that is known."""
+"""Logistic regression: the odds that a measurement is wrong, learned from measurements with known errors."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -21,10 +21,10 @@ def fit_logistic(
     reach: float = 1.0,
     c: float = C,
 ) -> Logistic:
-    """Maximum likelihood with an L2 penalty of 1 / c on the weights. `features` as for an ANFIS; `off`: beyond T1.
+    """Maximum likelihood with an L2 penalty of 1 / c on the weights. `features` as for ANFIS; `off`: error above T1.
 
     Raises:
-        LogError: too few rows, some that are not finite, or none that is off, or none that is not.
+        LogError: too few rows, rows that are not finite, or all rows of one class.
     """
     from scipy.optimize import minimize  # lazily: slow to import, and seldom needed
     from scipy.special import expit
@@ -32,7 +32,7 @@ def fit_logistic(
     checked(features, off.astype(float))
     if off.all() or not off.any():
         raise LogError(
-            f"{'all' if off.any() else 'none'} of the {len(off)} measurements to learn from are off; give both kinds."
+            f"{'all' if off.any() else 'none'} of the {len(off)} training measurements are wrong; give both kinds."
         )
     unit = unit_range(features, log, reach)
     x = np.column_stack([unit(features), np.ones(len(off))])
@@ -41,9 +41,9 @@ def fit_logistic(
 
     def cost(w: Float[np.ndarray, " n"]) -> tuple[float, Float[np.ndarray, " n"]]:
         # Σ ln(1 + e^(∓ w x)) + |w|² / 2c
-        result = sign * (x @ w)
-        value = np.logaddexp(0, -result).sum() + (penalty * w**2).sum() / 2
-        return float(value), penalty * w - x.T @ (sign * expit(-result))
+        margin = sign * (x @ w)
+        value = np.logaddexp(0, -margin).sum() + (penalty * w**2).sum() / 2
+        return float(value), penalty * w - x.T @ (sign * expit(-margin))
 
     def bend(w: Float[np.ndarray, " n"]) -> Float[np.ndarray, "n n"]:
         p = expit(x @ w)

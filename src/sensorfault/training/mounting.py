@@ -1,4 +1,4 @@
-"""How the inertial unit sits in the car and how late the receiver is, from a healthy drive alone."""
+"""Mounting of the inertial unit in the car and lags of the receiver, from a healthy drive alone."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -12,12 +12,12 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.vehicles.car import Roles
 from sensorfault.vehicles.inertial import Inertial
 
-WINDOW_S = 1.0  # changes of course and speed are compared over so long [s]
+WINDOW_S = 1.0  # changes of course and speed are compared over this time [s]
 LEAST_SPEED = 3.0  # a slower car's course is not used [m/s]
 LATEST_S = 2.0  # lags are sought from -0.5 s to this [s]
 STEP_S = 0.05  # ... on this grid [s]
-LEAST_MOVING_S = 20.0  # of the drive, to fit anything
-_TURN, _GO = 0.02, 0.3  # rms rate of course [rad/s] and of speed [m/s^2] from which an axis shows
+LEAST_MOVING_S = 20.0  # the drive must move for so long [s]
+_TURN, _GO = 0.02, 0.3  # smallest RMS rate of course [rad/s] and of speed [m/s^2] that shows an axis
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,10 @@ class Mounting:
 
     `up`, `forward`: unit vectors in the unit's axes.
     Course rate = yaw_sign * up . (gyro - gyro_bias), clockwise from north: -1 for a right-handed gyro.
-    Speed rate = thrust * forward . (accelerometer - accelerometer_bias), the bias with the mean gravity in it; `thrust`
-    is below 1 because a car that brakes dips, and gravity adds to what is felt.
-    `course_lag_s`, `speed_lag_s`: what the receiver says at t was so at t - lag by the inertial unit's clock.
-    `course_rms`, `speed_rms`: what is left of the rates over one second [rad/s], [m/s^2].
+    Speed rate = thrust * forward . (accelerometer - accelerometer_bias); the bias contains the mean gravity; `thrust`
+    is below 1 because a braking car pitches, which adds a part of gravity.
+    `course_lag_s`, `speed_lag_s`: the receiver's value at t belongs to t - lag on the inertial unit's clock.
+    `course_rms`, `speed_rms`: RMS residual of the rates over one second [rad/s], [m/s^2].
     """
 
     up: Float[np.ndarray, "3"]
@@ -52,18 +52,18 @@ class Mounting:
     def axis(self) -> Float[np.ndarray, "3"]:
         """Axis about which a positive rate of the gyro turns the car anticlockwise.
 
-        `up`, but for units that tell gravity with the other sign than any other force (Dresden's, a telephone's).
+        Equal to `up`, except for units that report gravity with the opposite sign of other forces (Dresden, a phone).
         """
         return -self.yaw_sign * self.up
 
     @property
     def left(self) -> Float[np.ndarray, "3"]:
-        """Across axis and forward."""
+        """Unit vector to the left: axis cross forward."""
         return np.cross(self.axis, self.forward)
 
 
 def inertial(mounting: Mounting, found: Roles) -> Inertial:
-    """The part that reads such a unit; a receiver that seems to be early is taken as not late."""
+    """The inertial unit with this mounting; a negative lag of the receiver counts as 0."""
     assert found.gyro is not None
     assert found.accelerometer is not None
     return Inertial(
@@ -78,15 +78,15 @@ def inertial(mounting: Mounting, found: Roles) -> Inertial:
 
 
 def fit_mounting(log: Log, found: Roles) -> Mounting:
-    """From a healthy drive with turns and changes of speed.
+    """Fit the mounting on a healthy drive with turns and changes of speed.
 
     Raises:
-        LogError: no inertial unit or velocity, or a drive that never moves, turns or changes its speed.
+        LogError: no inertial unit or velocity, or a car that never moves, turns or changes its speed.
     """
     if found.gyro is None or found.accelerometer is None or found.velocity is None:
         what = "gyro with x, y, z" if found.gyro is None else "accelerometer with x, y, z"
         what = "velocity over ground (speed and course, or north and east)" if found.velocity is None else what
-        raise LogError(f"{log.name} has no {what}; the way the unit is mounted cannot be told without it.")
+        raise LogError(f"{log.name} has no {what}, which is needed to find how the inertial unit is mounted.")
     time, speed, course = _ground(log, found)
     gyro, force = _sums(log, found.gyro), _sums(log, found.accelerometer)
     at = np.arange(log.time[0] + LATEST_S + WINDOW_S, log.time[-1] - 1.0, STEP_S)
@@ -94,8 +94,8 @@ def fit_mounting(log: Log, found: Roles) -> Mounting:
     at = at[(ends > LEAST_SPEED).all(axis=0)]
     if len(at) * STEP_S < LEAST_MOVING_S:
         raise LogError(
-            f"{log.name} moves faster than {LEAST_SPEED:g} m/s for {len(at) * STEP_S:.0f} s, telling how the unit is "
-            f"mounted needs {LEAST_MOVING_S:g} s; give a drive that moves."
+            f"{log.name} moves faster than {LEAST_SPEED:g} m/s for {len(at) * STEP_S:.0f} s, but finding the unit's "
+            f"mounting needs {LEAST_MOVING_S:g} s; give a drive that moves."
         )
     mean = np.nanmean(log.value[:, found.accelerometer], axis=0)
     up = mean / np.linalg.norm(mean)
@@ -107,7 +107,7 @@ def fit_mounting(log: Log, found: Roles) -> Mounting:
         if np.sqrt((rate**2).mean()) < least:
             raise LogError(f"{log.name} hardly {name} (below {least:g} {unit}); give a drive with corners and stops.")
 
-    # course rate = s up . (gyro - bias), at the lag that leaves least
+    # course rate = s up . (gyro - bias), at the lag with the smallest residual
     course_lag, (slope, level), course_rms = _lagged(at, course_rate, log.time, gyro @ up[:, None])
     sign = 1.0 if slope > 0 else -1.0
     gyro_mean = np.nanmean(log.value[:, found.gyro], axis=0)
@@ -133,7 +133,7 @@ def _ground(log: Log, found: Roles) -> tuple[Float[np.ndarray, " N"], Float[np.n
 
 
 def _sums(log: Log, columns: tuple[int, int, int]) -> Float[np.ndarray, "T 3"]:
-    """Integral over time of three columns from the first row on; a hole is bridged."""
+    """Integral over time of three columns from the first row on; gaps are interpolated."""
     sums = np.zeros((len(log), 3))
     for k, column in enumerate(columns):
         there = np.isfinite(log.value[:, column])
@@ -150,12 +150,12 @@ def _rate(at: Float[np.ndarray, " M"], time: Float[np.ndarray, " N"], x: Float[n
 def _lagged(
     at: Float[np.ndarray, " M"], rate: np.ndarray, time: Float[np.ndarray, " T"], sums: Float[np.ndarray, "T n"]
 ) -> tuple[float, np.ndarray, float]:
-    """rate(t) = b . mean of the inputs `lag` earlier + level: the best lag [s], (b, level), and the rms left."""
+    """rate(t) = b . mean of the inputs `lag` earlier + level: the best lag [s], (b, level), and the RMS residual."""
     best = np.inf, 0.0, np.zeros(0)
     for lag in np.arange(-0.5, LATEST_S, STEP_S):
         inputs = np.stack([_rate(at - lag, time, column) for column in sums.T] + [np.ones(len(at))], axis=1)
         kept = np.ones(len(at), bool)
-        for _ in range(3):  # a course that jumps when the car starts is no turn: the far ones are left out
+        for _ in range(3):  # the course jumps when a car starts; such outliers are left out
             fitted = np.linalg.lstsq(inputs[kept], rate[kept], rcond=None)[0]
             left = np.abs(rate - inputs @ fitted)
             kept = left <= 4 * np.median(left) + 1e-12

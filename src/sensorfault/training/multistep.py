@@ -1,4 +1,4 @@
-"""The network of the multi-step observer: one training for each number of steps, all of them one computation."""
+"""The network of the multi-step observer: one training for each number of steps, all in one computation."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -20,14 +20,16 @@ from sensorfault.training.multistep_loss import Weights, Windowed, loss_of
 from sensorfault.vehicles.height import MOST, StepNetwork
 
 HIDDEN = 10
-LEAST = 40  # windows to learn from
+LEAST = 40  # windows needed for training
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """Wang et al., section 2.1: Adam's `rate` times `drop` after every `every` epochs, an end after `patience` epochs
-    in which the training loss found no new minimum. `separate`: each step has weights of its own, as in their figure 3;
-    by default all steps share them.
+    """The training schedule of Wang S. et al., section 2.1.
+
+    Adam's `rate` is multiplied by `drop` after every `every` epochs; training ends after `patience` epochs without a
+    new minimum of the training loss. `separate`: each step has its own weights, as in their figure 3; by default all
+    steps share them.
     """
 
     epochs: int = 400
@@ -41,8 +43,9 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Trained:
-    """`nets[s][m]`: of seed s for the m-th number of steps; `loss`: after each epoch, NaN after the end, of increments
-    in units of their spread.
+    """Trained networks: `nets[s][m]` of seed s for the m-th number of steps.
+
+    `loss`: of increments in units of their spread, after each epoch; NaN after the end of the training.
     """
 
     nets: tuple[tuple[StepNetwork, ...], ...]
@@ -65,16 +68,16 @@ _ADAM = optax.scale_by_adam()
 def train_steps(
     fixes: Fixes, steps: Sequence[int], seeds: Sequence[int] = (0,), schedule: Schedule = Schedule()
 ) -> Trained:
-    """Networks that roll the height out over each of these numbers of steps, one training each and seed.
+    """Networks that predict the height over each of these numbers of steps; one training for each number and seed.
 
     Raises:
-        LogError: too few fixes that follow each other without a gap.
+        LogError: too few consecutive fixes without a gap.
     """
     longest = max(steps)
     first = fixes.windows(longest)
     if len(first) < LEAST:
         raise LogError(
-            f"{fixes.name} has {len(first)} unbroken runs of {longest} steps of its height, the multi-step observer "
+            f"{fixes.name} has {len(first)} runs of {longest} heights without a gap, but the multi-step observer "
             f"needs {LEAST}; give it more data, or data with fewer gaps."
         )
     center, half, unit = fixes.scale()
@@ -100,8 +103,8 @@ def train_steps(
         return StepNetwork(w, b, v, c, c0, h0, u0, p0, fixes.columns)
 
     nets = tuple(tuple(net(s * len(steps) + m) for m in range(len(steps))) for s in range(len(seeds)))
-    result = np.asarray(loss, float).T.reshape(len(seeds), len(steps), -1)
-    return Trained(nets, result)
+    losses = np.asarray(loss, float).T.reshape(len(seeds), len(steps), -1)
+    return Trained(nets, losses)
 
 
 def _f32(x: Any) -> Float32[Array, "..."]:
@@ -109,7 +112,7 @@ def _f32(x: Any) -> Float32[Array, "..."]:
 
 
 def _start(seeds: Sequence[tuple[int, int]], sets: int, inputs: int) -> Weights:
-    """Hidden weights uniform in ±√(6 / (inputs + hidden)) (Glorot & Bengio 2010); the output foretells no change."""
+    """Hidden weights uniform in ±√(6 / (inputs + hidden)) (Glorot & Bengio 2010); the output predicts no change."""
     bound = np.sqrt(6 / (inputs + HIDDEN))
     w = [np.random.default_rng(seed).uniform(-bound, bound, (sets, HIDDEN, inputs)) for seed in seeds]
     nothing = np.zeros((len(seeds), sets, HIDDEN))
@@ -118,7 +121,7 @@ def _start(seeds: Sequence[tuple[int, int]], sets: int, inputs: int) -> Weights:
 
 @partial(jax.jit, static_argnums=2)
 def _trained(data: Windowed, start: Weights, schedule: Schedule) -> tuple[Weights, Float32[Array, "E K"]]:
-    """All networks, each until it ends; what has ended stands still."""
+    """Train all networks together; a network whose training has ended no longer changes."""
     many, size = data.weight.shape[0], min(schedule.batch, data.first.size)
 
     def epoch(now: _Now) -> _Now:
@@ -141,9 +144,9 @@ def _trained(data: Windowed, start: Weights, schedule: Schedule) -> tuple[Weight
         loss = errors.mean(axis=0)
         better = loss < now.best
         since = jnp.where(better, 0, now.since + 1)
-        result = now.loss.at[now.epoch].set(jnp.where(now.going, loss, jnp.nan))
+        losses = now.loss.at[now.epoch].set(jnp.where(now.going, loss, jnp.nan))
         going = now.going & (since < schedule.patience)
-        return _Now(weights, adam, jnp.minimum(loss, now.best), since, going, result, now.epoch + 1)
+        return _Now(weights, adam, jnp.minimum(loss, now.best), since, going, losses, now.epoch + 1)
 
     end = lax.while_loop(
         lambda now: now.going.any() & (now.epoch < schedule.epochs),

@@ -1,4 +1,4 @@
-"""What the training of the observer's networks minimises: the errors of a roll-out, the early steps weighing more."""
+"""The loss of the observer's networks: the errors of a roll-out, with larger weights on early steps."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -13,7 +13,7 @@ from sensorfault.vehicles.height import MOST
 
 
 class Weights(NamedTuple):
-    """Of K networks with J steps each."""
+    """Weights of K networks with J steps each."""
 
     w: Float32[Array, "K J H V"]
     b: Float32[Array, "K J H"]

@@ -1,4 +1,4 @@
-"""A network that learns while it watches: how it begins, and what it is taught beforehand in the same way."""
+"""A network that learns online: its initial weights, and its training beforehand on the healthy log."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -23,17 +23,17 @@ from sensorfault.training.session import Session
 from sensorfault.training.windows import Windows
 
 GAP = 1.5  # ticks without a row that break a window
-EXACT = 0.5  # of the noise of an increment: what is foretold so well is not learned from
+EXACT = 0.5  # share of an increment's noise; a sample that is predicted better than this is not learned
 
 
 @dataclass(frozen=True)
 class Learning:
     """`hidden` units; `delays` (m, n), `rate`, `iterations`, `absolute` and `warm` as in OnlineNetwork.
 
-    Rate and iterations are such that a sample moves its own prediction by about a third of the error: what is learned
-    to convergence is learned with its noise. Beforehand the network is trained on the healthy log by `plan`. With
-    `scratch`, as printed, it begins knowing nothing all the same, and nothing is valid before `warm` samples in a row
-    have been foretold within their limits.
+    Rate and iterations are set so that a sample corrects its own prediction by about a third of the error: learning to
+    convergence would also learn the noise. Before use the network is trained on the healthy log by `plan`. With
+    `scratch`, as in the paper, it starts untrained, and nothing is valid until `warm` samples in a row have been
+    predicted within their limits.
     """
 
     hidden: int = 5
@@ -54,9 +54,9 @@ def learner(
     seed: int,
     session: Session,
 ) -> OnlineNetwork:
-    """The network for these outputs and inputs: scaled by the extremes of the healthy log, and taught on it.
+    """The network for these outputs and inputs, scaled by the range of the healthy log and trained on it.
 
-    It begins with random weights, but foretelling no change (or, if `absolute`, the middle of the range).
+    Before training it has random hidden weights and predicts no change (or, if `absolute`, the middle of the range).
     """
     (m, n), outputs = learning.delays, len(columns)
     seen = log.value[:, [*columns, *driven]]
@@ -82,8 +82,8 @@ def learner(
     return replace(new, network=found.net)
 
 
-def untaught(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: int) -> OnlineNetwork:
-    """The same knowing nothing, and unsure before `warm` samples in a row have been foretold within their limits."""
+def untrained(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: int) -> OnlineNetwork:
+    """The same network untrained; not valid until `warm` samples in a row have been predicted within their limits."""
     (inner,), outputs = residual.network.hidden, list(residual.columns)
     hidden, inputs = inner.weights.shape
     network = _new(hidden, inputs, len(outputs), seed)
@@ -91,9 +91,9 @@ def untaught(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int,
 
 
 def noise(value: Float[np.ndarray, "T D"]) -> Float[np.ndarray, " D"]:
-    """Standard deviation of each channel's noise [SI]: of what no smooth motion explains, by third differences.
+    """Standard deviation of each channel's noise [SI], by third differences, which remove smooth motion.
 
-    White noise of variance s² has third differences of variance 20 s²; their median size is not moved by a few jumps.
+    Third differences of white noise of variance s² have variance 20 s²; their median size is robust against jumps.
     """
     rough = np.abs(np.diff(value, 3, axis=0))
     return np.asarray(np.nanmedian(rough, axis=0) / 0.6745 / np.sqrt(20))
@@ -112,7 +112,7 @@ def _new(hidden: int, inputs: int, outputs: int, seed: int) -> Mlp:
 
 
 def _examples(residual: OnlineNetwork, log: Log) -> Windows:
-    """What the network sees before each healthy row, each a window of one row, and what it should say to that."""
+    """The network's input before each healthy row, as windows of one row, and its target output."""
 
     @jax.jit
     def all_of(residual: OnlineNetwork, rows: Sample) -> tuple[Array, Array, Array]:

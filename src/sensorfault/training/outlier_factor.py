@@ -1,4 +1,4 @@
-"""The frozen history of a local outlier factor."""
+"""The fixed history of a local outlier factor."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -11,26 +11,26 @@ HISTORY, NEIGHBOURS = 1000, 20  # points kept, and k
 
 
 def fit_history(seen: Float[np.ndarray, "M F"], seed: int, history: int = HISTORY, k: int = NEIGHBOURS) -> LocalDensity:
-    """The density of `history` of the healthy features seen, of all satellites and runs together, drawn by the seed.
+    """The local density of `history` healthy features, drawn at random from all satellites and runs.
 
-    Rows with a NaN are left out; fewer than `history` are taken as they are.
+    Rows with a NaN are left out; if there are fewer than `history`, all are used.
 
     Raises:
-        LogError: not more than k of them.
+        LogError: there are not more than k.
     """
     from scipy.spatial import KDTree
 
     known = seen[np.isfinite(seen).all(axis=1)]
     if len(known) <= k:
         raise LogError(
-            f"{len(known)} healthy innovations are no history for {k} neighbours; give a longer healthy log, or a "
+            f"{len(known)} healthy innovations are too few for {k} neighbours; give a longer healthy log, or a "
             "smaller k."
         )
     points = np.random.default_rng(seed).permutation(known)[:history]
     if points.shape[1] == 1:
         points = np.sort(points, axis=0)
     distance, index = KDTree(points).query(points, k + 1)
-    # of each point its k nearest others: itself is left out, or one as near where many are equal
+    # the k nearest other points of each point: the point itself is left out, or an equal one
     own = index == np.arange(len(points))[:, None]
     own[~own.any(axis=1), -1] = True
     distance, index = (x[~own].reshape(-1, k) for x in (distance, index))

@@ -1,4 +1,4 @@
-"""Where fuzzy rules begin: how the space of scaled features is cut before any premise is trained."""
+"""Initial premises of fuzzy rules: how the space of scaled features is divided before training."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -9,14 +9,14 @@ from jaxtyping import Float
 from sensorfault.numerics.fuzzy import Premises
 
 SLOPE = 2.0
-# Widths at which a membership of each kind is a half where a Gaussian of deviation 1 is.
+# Width at which a membership of each kind is one half where a Gaussian with sigma 1 is one half.
 HALF = {"bell": np.sqrt(2 * np.log(2)), "gaussian": 1.0, "triangle": 2 * np.sqrt(2 * np.log(2))}
 SQUASH, ACCEPT, REJECT = 1.5, 0.5, 0.15  # Chiu 1994
-CHUNK = 256  # rows whose distances to all others are held at a time
+CHUNK = 256  # rows whose distances to all others are in memory at a time
 
 
 def grid(inputs: int, memberships: int, kind: str = "bell") -> Premises:
-    """So many memberships evenly over each input, neighbours crossing at a half, and a rule for every combination."""
+    """Evenly spaced memberships on each input, neighbours crossing at one half, and a rule for every combination."""
     apart = 1 / max(memberships - 1, 1)
     center = np.tile(np.linspace(0, 1, memberships) if memberships > 1 else 0.5, inputs)
     of = tuple(i for i in range(inputs) for _ in range(memberships))
@@ -25,7 +25,7 @@ def grid(inputs: int, memberships: int, kind: str = "bell") -> Premises:
 
 
 def scatter(x: Float[np.ndarray, "N F"], rules: int, seed: int = 0, kind: str = "bell") -> Premises:
-    """A rule at each of so many rows drawn by chance, as wide as if they shared the space evenly. Jang 1993."""
+    """A rule at each of `rules` random rows, as wide as if they divided the space evenly. Jang 1993."""
     drawn = np.random.default_rng(seed).choice(len(x), min(rules, len(x)), replace=False)
     wide = 0.5 * len(drawn) ** (-1 / x.shape[1])
     return _around(x[drawn], np.full(x.shape[1], wide / HALF["bell"]), kind)
@@ -34,7 +34,7 @@ def scatter(x: Float[np.ndarray, "N F"], rules: int, seed: int = 0, kind: str = 
 def subtractive(
     x: Float[np.ndarray, "N F"], target: Float[np.ndarray, " N"], radius: float = 0.5, kind: str = "bell"
 ) -> Premises:
-    """A rule at each center that subtractive clustering finds among the rows with their targets. Chiu 1994.
+    """A rule at each center of a subtractive clustering of the rows with their targets. Chiu 1994.
 
     `radius`: reach of a cluster, as a share of the range of each input and of the target.
     """
@@ -46,7 +46,7 @@ def subtractive(
 
 
 def _centers(joint: Float[np.ndarray, "N D"], radius: float) -> Iterator[int]:
-    """Rows of the greatest potential, one after the other, each taking its own share away from its neighbours."""
+    """Rows of the highest potential, one after the other; each reduces the potential of its neighbours."""
 
     def near(rows: Float[np.ndarray, "n D"], reach: float) -> Float[np.ndarray, "n N"]:
         square = ((rows[:, None] - joint[None]) ** 2).sum(axis=2)
@@ -69,7 +69,7 @@ def _centers(joint: Float[np.ndarray, "N D"], radius: float) -> Iterator[int]:
 
 
 def _around(center: Float[np.ndarray, "R F"], sigma: Float[np.ndarray, " F"], kind: str) -> Premises:
-    """A rule at each center, with memberships of its own."""
+    """A rule at each center, with its own memberships."""
     rules, inputs = center.shape
     of = tuple(range(inputs)) * rules
     own = tuple(tuple(range(r * inputs, (r + 1) * inputs)) for r in range(rules))

@@ -1,4 +1,4 @@
-"""Principal components: the plain baseline of every reconstruction."""
+"""Principal components: the baseline of the reconstruction methods."""
 
 import numpy as np
 from jaxtyping import Float

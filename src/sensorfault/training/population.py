@@ -1,4 +1,4 @@
-"""Premises by a population instead of a gradient: slower, and not bound to the hollow it starts in."""
+"""Premises by a population search instead of a gradient: slower, but not caught in the nearest local minimum."""
 
 import numpy as np
 from jaxtyping import Float
@@ -7,13 +7,13 @@ from sensorfault.training.consequents import Lesson, Numbers, solve
 from sensorfault.training.hybrid import STEEP, Course
 
 BOUNDS = ((-0.25, 1.25), (0.05, 2.0), STEEP)  # of c, a and b, in units of the training range
-SIZE = 5  # individuals for each number sought
+SIZE = 5  # individuals for each number to optimise
 
 
 def population(numbers: Numbers, lesson: Lesson, unseen: Lesson | None, generations: int, seed: int) -> Course:
     """Differential evolution (Storn & Price 1997) of centers, widths and slopes, the consequents by least squares.
 
-    What is minimised is the error on `unseen`, or without it on the lesson. One of the first generation is as given.
+    Minimises the error on `unseen`, or without it on the lesson. `numbers` is one of the first generation.
     """
     from scipy.optimize import Bounds, differential_evolution  # lazily: slow to import, and seldom needed
 

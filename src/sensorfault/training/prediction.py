@@ -1,4 +1,4 @@
-"""What a predictor learns from: the windows before each new measurement of a healthy log, as they will be live."""
+"""Training data of a predictor: the windows before each new measurement of a healthy log, as in live use."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,9 @@ LEAST_HALF = 1e-9  # of a range that is mapped to [-1, 1] [SI]
 
 @dataclass(frozen=True)
 class Inputs:
-    """The columns of a log that a predictor sees, the first `outputs` of them predicted, on [-1, 1].
+    """The input columns of a predictor, scaled to [-1, 1]; the first `outputs` of them are predicted.
 
-    `held`: what a window holds of each column at each tick: the last measurement, `center` before the first one.
+    `held`: value of each column at each tick: the last measurement, or `center` before the first one.
     """
 
     columns: tuple[int, ...]
@@ -27,7 +27,7 @@ class Inputs:
 
     @classmethod
     def of(cls, log: Log, columns: tuple[int, ...], outputs: int, turning: tuple[int, ...]) -> "Inputs":
-        """Scaled by the extremes of the log; the columns in `turning` are angles, unwrapped before."""
+        """Scaled by the range of the log; the columns in `turning` are angles and are unwrapped first."""
         held = np.empty((len(log), len(columns)))
         center, half = np.zeros(len(columns)), np.ones(len(columns))
         for v, column in enumerate(columns):
@@ -43,7 +43,7 @@ class Inputs:
 
     @property
     def scaled(self) -> Float[np.ndarray, "T V"]:
-        """`held` on [-1, 1]."""
+        """`held`, scaled to [-1, 1]."""
         x: Float[np.ndarray, "T V"] = (self.held - self.center) / self.half
         return x
 
@@ -51,9 +51,9 @@ class Inputs:
 def prediction_windows(
     log: Log, inputs: Inputs, length: int, gap_s: float, stale_s: Float[np.ndarray, " D"]
 ) -> Windows:
-    """The `length` rows before each tick that has a new measurement of every output, and those measurements.
+    """The `length` rows before each tick with a new measurement of every output, and these measurements.
 
-    Left out are windows with a gap in the clock of more than `gap_s`, or with an output older than `stale_s`.
+    Windows with a gap in the clock above `gap_s`, or with an output older than `stale_s`, are left out.
     """
     outputs = list(inputs.columns[: inputs.outputs])
     new = log.fresh[:, outputs] & np.isfinite(log.value[:, outputs])

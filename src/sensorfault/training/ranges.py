@@ -21,15 +21,15 @@ from sensorfault.runtime.runners import replay, samples
 from sensorfault.training.labelled import Labelled
 from sensorfault.vehicles.underwater import Follower
 
-EVERY_S = 120.0  # one fault on each leader in so long
+EVERY_S = 120.0  # one fault on each leader in this time [s]
 LONGEST_S = (20.0, 70.0)
-BIAS, DRIFT = (3.0, 10.0), (0.1, 0.25)  # in standard deviations of a range; a second
+OFFSET, DRIFT = (3.0, 10.0), (0.1, 0.25)  # in standard deviations of a range; drift: a second
 KINDS = ("frozen", "frozen", "drift", "offset")
 
 
 @dataclass(frozen=True)
 class Lesson:
-    """`error`: how far off each of the L ranges is [m], NaN where that is not known."""
+    """A log and the error of each of the L ranges [m], NaN where unknown."""
 
     log: Log
     error: Float[np.ndarray, "T L"]
@@ -43,7 +43,7 @@ class _Tape(NamedTuple):
 
 
 def surfaced(log: Log, vehicle: Follower) -> Float[np.ndarray, "T L"]:
-    """How far off each range is by the position and the leader's at its tick, NaN where one is missing [m]; (26)."""
+    """Error of each range from fix and leader position at its tick [m], equation (26); NaN where one is missing."""
     rows = samples(log.time, log.value, log.fresh)
     expected = np.asarray(jax.jit(jax.vmap(_by_fix, in_axes=(None, 0)))(vehicle, rows))
     ranges = list(vehicle.observed)
@@ -53,12 +53,12 @@ def surfaced(log: Log, vehicle: Follower) -> Float[np.ndarray, "T L"]:
 
 
 def _by_fix(vehicle: Follower, sample: Sample) -> Float[Array, " L"]:
-    result = vehicle.expected(vehicle.start(sample)[0], sample)
-    return jnp.where(vehicle.ready(sample), result, jnp.nan)
+    expected = vehicle.expected(vehicle.start(sample)[0], sample)
+    return jnp.where(vehicle.ready(sample), expected, jnp.nan)
 
 
 def submerged(log: Log, columns: Sequence[int]) -> Log:
-    """The log with no fix after the first, as it will be under water."""
+    """The log with only its first fix, as it is under water."""
     first = int(log.fresh[:, list(columns)].all(axis=1).argmax())
     hidden = np.zeros(log.value.shape, bool)
     hidden[first + 1 :, list(columns)] = True
@@ -66,7 +66,7 @@ def submerged(log: Log, columns: Sequence[int]) -> Log:
 
 
 def spoiled(lesson: Lesson, vehicle: Follower, sigma_m: float, seed: int) -> Lesson:
-    """The same log with faults on every leader's ranges: jams, drifts and biases at random."""
+    """The same log with random faults on every leader's ranges: frozen, drift and offset."""
     rng = np.random.default_rng([seed, 9])
     log, ranges = lesson.log, list(vehicle.observed)
     faults = [fault for column in ranges for fault in _faults(log, column, sigma_m, rng)]
@@ -82,14 +82,14 @@ def _faults(log: Log, column: int, sigma_m: float, rng: np.random.Generator) -> 
         kind, length = str(rng.choice(KINDS)), float(rng.uniform(*LONGEST_S))
         if not ((received >= start) & (received < start + length)).any():
             continue
-        size = {"frozen": 0.0, "drift": rng.uniform(*DRIFT), "offset": rng.uniform(*BIAS)}[kind] * sigma_m * unit
+        size = {"frozen": 0.0, "drift": rng.uniform(*DRIFT), "offset": rng.uniform(*OFFSET)}[kind] * sigma_m * unit
         sign = float(rng.choice((-1, 1)))
         faults.append(Fault(kind, channel.sensor, channel.name, float(start), length, float(sign * size)))
     return faults
 
 
 def labelled(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> list[Labelled]:
-    """Of each leader the features of its innovations (N, 3) and the sizes of the errors (N,) [m], all logs together."""
+    """For each leader the features of its innovations (N, 3) and the error sizes (N,) [m], over all logs."""
     runs = innovations(monitor, lessons, vehicle)
     return [
         Labelled(np.concatenate([features(*run.tape) for run in of]), np.concatenate([np.abs(run.error) for run in of]))
@@ -99,26 +99,26 @@ def labelled(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> 
 
 @dataclass(frozen=True)
 class Run:
-    """The innovations of one leader in one log whose errors are known: value [m], variance and noise [m²]; errors."""
+    """Innovations with known errors of one leader in one log: `tape` is value [m], variance [m²], noise [m²]."""
 
     tape: tuple[Float[np.ndarray, " n"], ...]
     error: Float[np.ndarray, " n"]
 
 
 def innovations(monitor: Monitor, lessons: Sequence[Lesson], vehicle: Follower) -> list[list[Run]]:
-    """By leader, then by log."""
+    """The runs of each leader, by log."""
     runs: list[list[Run]] = [[] for _ in vehicle.observed]
     for lesson in lessons:
         rows = samples(lesson.log.time, lesson.log.value, lesson.log.fresh)
-        tape = _Tape(*(np.asarray(x) for x in _told(monitor, rows)))
+        tape = _Tape(*(np.asarray(x) for x in _open_loop(monitor, rows)))
         for j, column in enumerate(vehicle.observed):
-            result = np.asarray(tape.valid)[:, column] & np.isfinite(lesson.error[:, j])
-            runs[j].append(Run(tuple(np.asarray(x)[result, column] for x in tape[:3]), lesson.error[result, j]))
+            known = np.asarray(tape.valid)[:, column] & np.isfinite(lesson.error[:, j])
+            runs[j].append(Run(tuple(np.asarray(x)[known, column] for x in tape[:3]), lesson.error[known, j]))
     return runs
 
 
 @jax.jit
-def _told(monitor: Monitor, rows: Sample) -> _Tape:
+def _open_loop(monitor: Monitor, rows: Sample) -> _Tape:
     return replay(monitor, monitor.init(), rows, _features)[1]
 
 

@@ -1,4 +1,4 @@
-"""How far a roll-out of the height errs on a log."""
+"""The error of a roll-out of the height on a log."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -12,19 +12,19 @@ from jaxtyping import Array, Float, Int
 from sensorfault.training.fixes import Fixes
 from sensorfault.vehicles.height import Climb, StepNetwork
 
-WINDOWS = 512  # of each number of steps, lying evenly
+WINDOWS = 512  # evenly spaced windows for each number of steps
 
 
 def errors(model: Climb | StepNetwork, fixes: Fixes, steps: Sequence[int]) -> Float[np.ndarray, "M W"]:
-    """Measured minus rolled out over each of these numbers of steps [m], in WINDOWS unbroken windows (some of them more
-    than once where there are fewer, of which there must be one); each starts from what was measured.
+    """Measured minus predicted height over each of these numbers of steps [m], in WINDOWS windows without a gap.
 
-    Whoever it is that errs: the model, the inputs, or the height at either end.
+    If there are fewer windows (at least one), some are used more than once. Each starts from a measured height. The
+    error contains that of the model, of the inputs, and of the height at both ends.
     """
     first = [fixes.windows(n) for n in steps]
     start = [w[np.linspace(0, len(w) - 1, WINDOWS).round().astype(int)] for w in first]
     end = np.stack([s + n for s, n in zip(start, steps, strict=True)])
-    # one shape for all, so one compilation: what lies before the start is not looked at
+    # one shape for all, so one compilation: rows before the start are not used
     at = np.maximum(end[..., None] - np.arange(max(steps), -1, -1), 0)
     rolled = _rolled(model, *(jnp.asarray(x[at]) for x in (fixes.height, fixes.inputs, fixes.time)), jnp.asarray(steps))
     return np.asarray(fixes.height[end] - np.asarray(rolled))

@@ -1,4 +1,4 @@
-"""What fuzzy rules say, in words: sentences for people, and their memberships as a table."""
+"""Fuzzy rules in words: a sentence for each rule, and the memberships as a table."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -15,9 +15,9 @@ WORDS = {1: ("any",), 2: ("small", "large"), 3: ("small", "middling", "large")}
 
 
 class Membership(NamedTuple):
-    """One membership function in units of its feature, or with logarithms in e-folds beside its center.
+    """One membership function in units of its feature.
 
-    `center` is in the feature's unit either way, `width` is that of the logarithm if there is one.
+    If the model uses logarithms, `width` is in units of the logarithm; `center` is always in the feature's unit.
     """
 
     feature: str
@@ -28,32 +28,32 @@ class Membership(NamedTuple):
 
 
 def memberships(model: Anfis, names: Sequence[str]) -> tuple[Membership, ...]:
-    """All of a model's, in the order of its premises. `names`: of the features."""
-    result = jax.tree.map(np.asarray, model)
-    premises, words = result.premises, _words(result)
+    """All memberships of a model, in the order of its premises. `names`: of the features."""
+    arrays = jax.tree.map(np.asarray, model)
+    premises, words = arrays.premises, _words(arrays)
     of = list(premises.inputs)
-    span, low = result.unit.span[of], result.unit.low[of]
+    span, low = arrays.unit.span[of], arrays.unit.low[of]
     center = low + span * premises.center
-    center = np.exp(center) if result.unit.log else center
+    center = np.exp(center) if arrays.unit.log else center
     return tuple(
         Membership(names[i], words[p], float(center[p]), float(premises.width[p] * span[p]), float(premises.slope[p]))
         for p, i in enumerate(of)
     )
 
 
-def sentences(model: Anfis, names: Sequence[str], said: str = "error", unit: str = "m") -> tuple[str, ...]:
+def sentences(model: Anfis, names: Sequence[str], output: str = "error", unit: str = "m") -> tuple[str, ...]:
     """Each rule as a sentence: 'If the innovation is small and .., the error is 1.2 m + 0.3 innovation + ...'.
 
-    What a rule says is in the features' own units, or of their logarithms where the model takes them.
+    Features are in their own units, or as logarithms if the model uses these.
     """
-    result = jax.tree.map(np.asarray, model)
-    words = _words(result)
-    written = [f"ln {name}" if result.unit.log else name for name in names]
-    slopes = result.consequents[:, :-1] / result.unit.span
-    constants = result.consequents[:, -1] - slopes @ result.unit.low
+    arrays = jax.tree.map(np.asarray, model)
+    words = _words(arrays)
+    written = [f"ln {name}" if arrays.unit.log else name for name in names]
+    slopes = arrays.consequents[:, :-1] / arrays.unit.span
+    constants = arrays.consequents[:, -1] - slopes @ arrays.unit.low
     return tuple(
-        f"If {_premise(result, rule, words, names)}, the {said} is {_line(constant, slope, written, unit)}."
-        for rule, slope, constant in zip(result.premises.rules, slopes, constants, strict=True)
+        f"If {_premise(arrays, rule, words, names)}, the {output} is {_line(constant, slope, written, unit)}."
+        for rule, slope, constant in zip(arrays.premises.rules, slopes, constants, strict=True)
     )
 
 
@@ -68,7 +68,7 @@ def _line(constant: float, slopes: Float[np.ndarray, " F"], names: Sequence[str]
 
 
 def _words(model: Anfis) -> list[str]:
-    """A word for each membership by its place among those of its input; where they are many, where it lies."""
+    """A word for each membership by its rank among those of its input; with many memberships, its center."""
     return [_word(model, p) for p in range(len(model.premises.inputs))]
 
 

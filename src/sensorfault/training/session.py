@@ -1,4 +1,4 @@
-"""What a fit may do besides fitting: say how far it is, and leave a checkpoint to go on from."""
+"""Options of a fit besides the data: a callback for progress, and a checkpoint file."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,16 +6,17 @@ from pathlib import Path
 
 
 def _silent(_: str) -> None:
-    """Nobody listens."""
+    """No output."""
 
 
 @dataclass(frozen=True)
 class Session:
-    """`tell` is given what is being done, in a few words. `checkpoint`: written while a network is trained by epochs,
-    and gone on from if it is there; a method that is fitted in one stroke writes none.
+    """`progress` is called with a few words on the current step.
+
+    `checkpoint`: a file saved after every epoch of a training; resumed if present. Methods without epochs write none.
     """
 
-    tell: Callable[[str], None] = _silent
+    progress: Callable[[str], None] = _silent
     checkpoint: Path | None = None
 
 

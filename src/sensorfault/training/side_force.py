@@ -1,4 +1,4 @@
-"""What side force a healthy car feels when it turns."""
+"""Fit the side force of a healthy car in turns."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -11,18 +11,18 @@ from sensorfault.training.mounting import fit_mounting
 from sensorfault.vehicles.car import Roles
 from sensorfault.vehicles.inertial import SideOn
 
-STALE_S = 1.0  # a speed stands for so long
-GAIN, GAIN_SPREAD = 1.0, 0.1  # of cars, which lean by some degrees in a bend of 1 g
-INDEPENDENT_S = 1.0  # errors of the side force forget each other in about so long
-LIKELY = 0.5, 1.5  # a gain beyond: the unit's axes are not what they seem
+STALE_S = 1.0  # a speed is valid for this long [s]
+GAIN, GAIN_SPREAD = 1.0, 0.1  # prior of the gain: a car rolls by some degrees in a turn of 1 g
+INDEPENDENT_S = 1.0  # correlation time of the errors of the side force [s]
+LIKELY = 0.5, 1.5  # a gain outside this range means that the unit's axes are wrong
 
 
 def fit_side_force(log: Log, found: Roles) -> SideForce:
-    """From a healthy drive with turns and changes of speed: a_left = k v ω + level.
+    """Fit a_left = k v ω + level on a healthy drive with turns and changes of speed.
 
     Raises:
-        LogError: no inertial unit or velocity, a drive that never moves, turns or changes its speed, or a side force
-            that does not follow the turning.
+        LogError: no inertial unit or velocity, a car that never moves, turns or changes its speed, or a side force
+            that does not match the turn rate.
     """
     mounted = fit_mounting(log, found)
     assert found.gyro is not None
@@ -35,7 +35,7 @@ def fit_side_force(log: Log, found: Roles) -> SideForce:
     force = log.value[:, found.accelerometer] @ mounted.left
     there = np.isfinite(turn) & np.isfinite(force) & (speed >= SLOWEST)
     there &= log.fresh[:, (*found.gyro, *found.accelerometer)].all(axis=1)
-    # a_left = k v ω + level, by least squares and what is known of k before: a drive with few turns tells little of it
+    # a_left = k v ω + level, by least squares with a prior on k: a drive with few turns contains little about it
     inputs = np.stack([turn[there], np.ones(there.sum())], axis=1)
     left = force[there] - inputs @ np.linalg.lstsq(inputs, force[there], rcond=None)[0]
     weight = log.period_s / INDEPENDENT_S / max(float((left**2).mean()), 1e-6)
@@ -45,7 +45,7 @@ def fit_side_force(log: Log, found: Roles) -> SideForce:
     )
     if not LIKELY[0] <= gain <= LIKELY[1]:
         raise LogError(
-            f"{log.name}: the side force is {gain:.2f} times speed times turn rate, it should be about once; "
+            f"{log.name}: the side force is {gain:.2f} times speed times turn rate, but should be about equal to it; "
             "check the axes of gyro and accelerometer in vehicle.toml."
         )
     return SideForce(

@@ -1,4 +1,4 @@
-"""Examples for a network: windows of consecutive rows, and what should come out of each."""
+"""Training examples of a network: windows of consecutive rows, and the target output of each."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from jaxtyping import Array, Float, Float32, Int, Int32
 
 
 class Windows(NamedTuple):
-    """Window k is rows[first[k] : first[k] + length]; `target[k]` is what a network should make of it. Scaled."""
+    """Window k is rows[first[k] : first[k] + length], with target output `target[k]`; all scaled."""
 
     rows: Float[np.ndarray, "N C"]
     first: Int[np.ndarray, " M"]

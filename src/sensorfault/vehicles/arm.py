@@ -1,4 +1,4 @@
-"""A robot arm: which channels say how its joints move, and how two of them move in a vertical plane."""
+"""A robot arm: the channels of its joints, and the motion of two joints in a vertical plane."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from sensorfault.numerics.two_link import Constants, ahead
 
 @dataclass(frozen=True)
 class Joints:
-    """Columns of a log by what they say of an arm's joints, in the log's order."""
+    """Columns of the rates, angles and torques of an arm's joints, in the log's order."""
 
     rates: tuple[int, ...]
     angles: tuple[int, ...]
@@ -21,7 +21,7 @@ class Joints:
 
 
 def joints(log: Log) -> Joints:
-    """Channels called `rate`, `angle` and `torque`, one of each a joint where the log has them."""
+    """Channels called `rate`, `angle` and `torque`, at most one of each for a joint."""
 
     def called(name: str, unit: str) -> tuple[int, ...]:
         return tuple(i for i, c in enumerate(log.channels) if c.name == name and si_unit(c.unit) == unit)

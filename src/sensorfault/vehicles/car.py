@@ -1,4 +1,4 @@
-"""A car: which channels say how it moves, and the kinematic bicycle that it moves as."""
+"""A car: the channels of its motion, and the kinematic bicycle model."""
 
 from dataclasses import dataclass
 
@@ -9,12 +9,12 @@ from jaxtyping import Array, Float
 from sensorfault.logs.table import Channel, Log
 from sensorfault.logs.units import si_unit
 
-LEAST_SPEED = 2.0  # below this a course means little [m/s]
+LEAST_SPEED = 2.0  # below this the course is unreliable [m/s]
 
 
 @dataclass(frozen=True)
 class Roles:
-    """Columns of a log by what they say of a car's motion; None where the log does not say it.
+    """Columns of a log that describe a car's motion; None where the log has no such channel.
 
     Velocity over ground is `north` and `east`, or `speed` and `course` (clockwise from north). `gyro` and
     `accelerometer` are the columns of x, y and z. `steering` is the angle of the steering wheel or of the front wheels.
@@ -48,14 +48,14 @@ class Roles:
         return self.north is None or self.east is None
 
     def lacking(self, *names: str) -> str:
-        """What is missing of these roles, in words; empty if nothing is."""
+        """The names of these roles that are missing; empty if none is."""
         return ", ".join(name for name in names if getattr(self, name) is None)
 
 
 def roles(log: Log) -> Roles:
-    """The first channel of each name and unit in the log's order, the receiver's own before others.
+    """The first channel with each name and unit in the log's order; channels of the receiver come first.
 
-    A course and a speed of two sensors would be no velocity: they are new at different times.
+    Course and speed of two sensors would be no velocity, because they are new at different times.
     """
     found: dict[str, int] = {}
     for name, unit in _NAMES.items():
@@ -93,7 +93,7 @@ def axes(channels: tuple[Channel, ...], unit: str) -> tuple[int, int, int] | Non
 
 
 def ground_velocity(first: Float[Array, ""], second: Float[Array, ""], polar: bool) -> Float[Array, "2"]:
-    """East and north [m/s] of speed and course, or of north and east."""
+    """East and north velocity [m/s] from speed and course, or from north and east."""
     if polar:
         return first * jnp.stack([jnp.sin(second), jnp.cos(second)])
     return jnp.stack([second, first])
@@ -104,8 +104,8 @@ def bicycle(
 ) -> Float[Array, "4"]:
     """One step of the kinematic bicycle: [x, y, heading φ, speed v] [m, m, rad, m/s].
 
-    Min et al. 2021, equation (16); of (17), whose matrix form divides by x, the additive form. `curvature` is
-    tan(front wheel angle) / wheelbase [1/m], or yaw rate / speed; φ counts from x to y.
+    Min et al. 2021, equation (16), and (17) in additive form (its matrix form divides by x). `curvature` is
+    tan(front wheel angle) / wheelbase [1/m], or yaw rate / speed; φ is positive from x to y.
     """
     x, y, phi, v = state
     # (16) x⁺ = x + Δt v cos φ,  y⁺ = y + Δt v sin φ,  φ⁺ = φ + Δt v tan(δ) / l,  v⁺ = v + Δt a
@@ -115,7 +115,7 @@ def bicycle(
 
 
 def moving(log: Log, found: Roles, speed: float = LEAST_SPEED) -> Float[np.ndarray, " N"]:
-    """Times at which a new velocity is above `speed` [s]; empty for a drive that never moves."""
+    """Times of new velocities above `speed` [s]; empty for a car that never moves."""
     if found.velocity is None:
         return np.zeros(0)
     first, second = (log.value[:, i] for i in found.velocity)

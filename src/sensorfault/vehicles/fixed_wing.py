@@ -1,4 +1,4 @@
-"""An aircraft's height: which channels of a log say how high it flies, and what moves it up and down."""
+"""An aircraft's height: the channels that measure it, and those that change it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ _INPUTS = {"pitch": "rad", "roll": "rad", "elevator": None, "throttle": None, "a
 
 @dataclass(frozen=True)
 class Roles:
-    """Columns of a log by what they say of an aircraft's height; None where the log does not say it.
+    """Columns of a log that describe an aircraft's height; None where the log has no such channel.
 
-    `height`: of the satellite receiver [m]; `barometric`: the height that the air's pressure says [m]. `vertical`: the
-    receiver's vertical speed [m/s]; times `upward` it is a climb. `inertial`: the vertical speed of an inertial unit,
-    with its sign; an autopilot's estimate is none, since it follows the receiver. `elevator` and `throttle` are
-    commands or deflections in any unit. `accelerometer`: columns of x (forward), y
-    and z (right and down, or left and up).
+    `height`: of the satellite receiver [m]; `barometric`: from the air pressure [m]. `vertical`: the receiver's
+    vertical speed [m/s]; times `upward` it is the climb rate. `inertial`: the vertical speed of an inertial unit, with
+    its sign; an autopilot's estimate does not count, because it follows the receiver. `elevator` and `throttle`:
+    commands or deflections in any unit. `accelerometer`: columns of x (forward), y and z (right and down, or left and
+    up).
     """
 
     height: int | None = None
@@ -39,42 +39,42 @@ class Roles:
 
     @property
     def inputs(self) -> tuple[int, ...]:
-        """What else the paper's network is told, as far as it is there: pitch, throttle and elevator."""
+        """Further inputs of the paper's network that the log has: pitch, throttle and elevator."""
         return tuple(i for i in (self.pitch, self.throttle, self.elevator) if i is not None)
 
     @property
     def unit(self) -> tuple[int, ...]:
-        """Pitch, roll and the accelerometer's x, y and z, if all are there; else nothing."""
+        """Pitch, roll and the accelerometer's x, y and z; empty if one is missing."""
         if self.pitch is None or self.roll is None or self.accelerometer is None:
             return ()
         return (self.pitch, self.roll, *self.accelerometer)
 
 
 def roles(log: Log) -> Roles:
-    """The first channel of each name and unit in the log's order.
+    """The first channel with each name and unit in the log's order.
 
-    A sensor is the receiver if its name has the word `gps` or, failing that, `gnss`, or else if it tells a latitude too
-    (an autopilot's estimate does, and is called after a receiver by `init`); the barometer if its name begins with
-    `baro` or `pressure`, an inertial unit with `ins`, `imu` or `inertial`. A height of nobody known is the receiver's
-    where that has none.
+    The receiver is the sensor with `gps` in its name, else with `gnss`, else one with a latitude (`init` gives an
+    autopilot's estimate the name of a receiver). The barometer is the sensor whose name begins with `baro` or
+    `pressure`; an inertial unit begins with `ins`, `imu` or `inertial`. A height of any other sensor is taken for the
+    receiver's if the receiver has none.
     """
     channels = log.channels
     located = {c.sensor for c in channels if c.name == "latitude"}
     heights = [i for i, c in enumerate(channels) if c.name in _HEIGHT and si_unit(c.unit) == "m"]
     climbs = [i for i, c in enumerate(channels) if c.name in _CLIMB and si_unit(c.unit) == "m/s"]
 
-    def strange(i: int) -> int:
-        """How little the channel's sensor looks like a receiver."""
+    def rank(i: int) -> int:
+        """Rank of the channel's sensor as a receiver, 0 for the most likely."""
         sensor = channels[i].sensor
         words = sensor.split("_")
         near = [any(word.startswith(name) for word in words) for name in _RECEIVER]
         return [*near, sensor in located, True].index(True)
 
     barometric = _first(i for i in heights if channels[i].sensor.startswith(_BAROMETER))
-    height = min((i for i in heights if i != barometric), key=strange, default=None)
+    height = min((i for i in heights if i != barometric), key=rank, default=None)
     own = None if height is None else channels[height].sensor
-    receivers = [i for i in climbs if strange(i) <= len(_RECEIVER) or channels[i].sensor == own]
-    vertical = min(receivers, key=strange, default=None)
+    receivers = [i for i in climbs if rank(i) <= len(_RECEIVER) or channels[i].sensor == own]
+    vertical = min(receivers, key=rank, default=None)
     inertial = _first(i for i in climbs if i not in receivers and channels[i].sensor.startswith(_INERTIAL))
     found = {name: _called(channels, name, unit) for name, unit in _INPUTS.items()}
     return Roles(

@@ -1,4 +1,4 @@
-"""How an aircraft's height goes on from one fix to the next: as a vertical speed says, or as a network has learned."""
+"""How an aircraft's height changes from one fix to the next: by a vertical speed, or by a trained network."""
 
 import equinox as eqx
 import jax
@@ -6,13 +6,13 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float, Int
 
-MOST = 2.0  # of what the network sees: halves of the training range
+MOST = 2.0  # scaled inputs of the network are clipped to this; 1 is half of the training range
 
 
 class Climb(eqx.Module):
-    """h⁺ = h + climb Δt with the mean climb of both ends, or h⁺ = h + what another height gained meanwhile.
+    """h⁺ = h + climb Δt with the mean climb rate of both ends, or h⁺ = h + the change of another height.
 
-    The step of Wang et al. without a network. `columns`: one, of a vertical speed [m/s], or of a height [m] where
+    The step of Wang S. et al. without a network. `columns`: one, of a vertical speed [m/s], or of a height [m] where
     `speed` is False. `upward`: 1 or -1.
     """
 
@@ -27,7 +27,7 @@ class Climb(eqx.Module):
         time: Float[Array, " P"],
         steps: Int[Array, " M"],
     ) -> Float[Array, " M"]:
-        """The height now [m], rolled out over the last so many of L steps; `inputs` and `time` end with now's."""
+        """The height now [m], rolled out over the last `steps` of L steps; `inputs` and `time` end with the present."""
         x = self.upward * inputs[:, 0]
         # h(k+1) = h(k) - v_d Δt
         gained = (x[1:] + x[:-1]) / 2 * jnp.diff(time) if self.speed else jnp.diff(x)
@@ -36,11 +36,11 @@ class Climb(eqx.Module):
 
 
 class StepNetwork(eqx.Module):
-    """h⁺ = h + unit Δt / period f(h, inputs): Wang et al., equation of the observer, with f their network of one step.
+    """h⁺ = h + unit Δt / period f(h, inputs): the observer of Wang S. et al., with f their network of one step.
 
-    Input, fusion (all inputs side by side, scaled by their training extremes), hidden ReLU units, linear output. The
-    j-th step of a roll-out has weights of its own, or the last ones there are: a single set is shared by all steps. The
-    network answers increments, for one period; absolute heights would have to be copied through it.
+    Layers: all inputs scaled by their training range, hidden ReLU units, linear output. Step j of a roll-out uses
+    weight set j, or the last set if there are fewer: with a single set all steps share it. The network gives the
+    increment of one period; for absolute heights it would have to copy its input.
     """
 
     weights: Float[Array, "J H V"]
@@ -60,7 +60,7 @@ class StepNetwork(eqx.Module):
         time: Float[Array, " P"],
         steps: Int[Array, " M"],
     ) -> Float[Array, " M"]:
-        """The height now [m], rolled out over the last so many of L steps; `inputs` and `time` end with now's."""
+        """The height now [m], rolled out over the last `steps` of L steps; `inputs` and `time` end with the present."""
         begun = height.size - steps
 
         def step(h: Float[Array, " M"], row: tuple[Array, Array, Array, Array]) -> tuple[Float[Array, " M"], None]:
@@ -75,7 +75,7 @@ class StepNetwork(eqx.Module):
     def gain(
         self, h: Float[Array, " M"], inputs: Float[Array, " U"], dt: Float[Array, ""], j: Int[Array, " M"]
     ) -> Float[Array, " M"]:
-        """What the height gains in the j-th step, of `dt` [s], from heights h [m]."""
+        """Change of the height [m] in step j of length `dt` [s], from heights h [m]."""
         j = jnp.clip(j, 0, self.offset.size - 1)
         seen = jnp.concatenate([h[:, None], jnp.tile(inputs, (h.size, 1))], axis=1)
         x = jnp.clip((seen - self.center[None]) / self.half[None], -MOST, MOST)

@@ -1,4 +1,4 @@
-"""What an inertial unit in a car says of its motion: how fast it turns and how hard it is pushed."""
+"""The motion of a car from its inertial unit: turn rate and acceleration."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,10 +10,10 @@ STANDING = 0.1  # [m/s]
 
 
 class Inertial(eqx.Module):
-    """Rates of course and speed out of a gyro and an accelerometer, fitted by training/mounting.py.
+    """Rates of course and speed from a gyro and an accelerometer, fitted by training/mounting.py.
 
     `yaw`: course rate = yaw . (gyro - gyro_bias), clockwise; `push`: speed rate = push . (force - force_bias).
-    `lag_s`: how late the receiver's course and speed are (first-order lags) [s]. `gyro`, `accelerometer`: columns.
+    `lag_s`: first-order lags of the receiver's course and speed [s]. `gyro`, `accelerometer`: columns.
     """
 
     yaw: Float[Array, "3"]
@@ -33,16 +33,16 @@ class Inertial(eqx.Module):
         return jnp.where(there, jnp.stack([turn, go]), 0.0), there
 
     def trusted(self, trust: Trust, fresh: Bool[Array, " C"]) -> Bool[Array, ""]:
-        """Whether all that is new of the unit is taken at its word."""
+        """Whether all new channels of the unit are trusted."""
         return jnp.stack([trust.measured[i] | ~fresh[i] for i in (*self.gyro, *self.accelerometer)]).all()
 
     def decay(self, dt: Float[Array, ""]) -> Float[Array, "2"]:
-        """What is left of a first-order lag after dt [s]; nothing where there is no lag."""
+        """Remaining share of a first-order lag after dt [s]; 0 where there is no lag."""
         return jnp.where(self.lag_s > 0, jnp.exp(-dt / jnp.where(self.lag_s > 0, self.lag_s, 1.0)), 0.0)
 
 
 class SideOn(eqx.Module):
-    """What the same unit feels of a turn, fitted by training/side_force.py.
+    """Side force and turn rate from the same unit, fitted by training/side_force.py.
 
     Force to the left = left . force - level, anticlockwise rate = up . gyro - drift. `gyro`, `accelerometer`: columns.
     """
@@ -63,9 +63,9 @@ class SideOn(eqx.Module):
 
 
 def turned(velocity: Float[Array, "2"], by: Float[Array, ""], faster: Float[Array, ""]) -> Float[Array, "2"]:
-    """A velocity (east, north) turned clockwise [rad] and made faster along itself [m/s]; never backwards.
+    """A velocity (east, north) turned clockwise by `by` [rad], with `faster` added to its size [m/s]; never reversed.
 
-    One below STANDING knows no direction to be made faster in.
+    A velocity below STANDING has no direction, so its size is not changed.
     """
     east, north = velocity
     cos, sin = jnp.cos(by), jnp.sin(by)

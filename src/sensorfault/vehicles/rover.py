@@ -1,4 +1,4 @@
-"""A robot on a floor that counts its wheels' turns and ranges to landmarks of known place."""
+"""A robot on a floor with wheel odometry and ranges to landmarks at known positions."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -9,15 +9,15 @@ from sensorfault.numerics.columns import picked
 
 UNKNOWN_SPEED = 0.3  # standard deviation of a forward velocity that nothing measures [m/s]
 UNKNOWN_TURN = 0.6  # and of a turn rate [rad/s]
-LOST_M = 100.0  # with a position no better than this, ranges do not bring it back
+LOST_M = 100.0  # with a larger position uncertainty, ranges cannot correct the filter any more [m]
 
 
 class Rover(eqx.Module):
     """State: north and east [m], heading from north to east [rad]. Leung et al. 2011, section 3.
 
-    `landmarks`: north and east of each [m]; `q`: variances that one second of reckoning adds to the state; `first`:
-    standard deviations of the pose it begins at. Columns: `observed`, the ranges; `odometry`, forward velocity [m/s]
-    and turn rate [rad/s]; `pose`, of the state where it is known.
+    `landmarks`: north and east of each [m]; `q`: variances that one second of dead reckoning adds to the state;
+    `first`: standard deviations of the initial pose. Columns: `observed`, the ranges; `odometry`, forward velocity
+    [m/s] and turn rate [rad/s]; `pose`, of the state where it is known.
     """
 
     landmarks: Float[Array, "M 2"]

@@ -1,4 +1,4 @@
-"""A train, or any vehicle on the ground, with satellites and an inertial unit: how well its instruments measure."""
+"""A train or another ground vehicle with satellite receiver and inertial unit: the noise of its instruments."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -7,15 +7,15 @@ from jaxtyping import Array, Float
 from sensorfault.numerics.ins_error import ACC, CLOCK, DRIFT, GYRO, PSI, VEL
 from sensorfault.numerics.strapdown import Way
 
-UNKNOWN_TURN = 0.1  # turn that nobody measures [rad/√s]
+UNKNOWN_TURN = 0.1  # random walk of the heading without a gyro [rad/√s]
 
 
 class Grade(eqx.Module):
     """White noise and random walk of the inertial unit and of the receiver's clock, as densities.
 
     `gyro` [rad/√s], `force` [m/s/√s], their biases' walk [rad/s/√s], [m/s²/√s]; `clock` [m/√s], `drift` [m/s/√s].
-    `gyro_bias` [rad/s] and `force_bias` [m/s²]: how far off the instruments may be to begin with.
-    `motion`: the walk of a velocity that no inertial unit tells [m/s/√s].
+    `gyro_bias` [rad/s] and `force_bias` [m/s²]: standard deviations of the initial biases.
+    `motion`: random walk of the velocity without an inertial unit [m/s/√s].
     """
 
     gyro: Float[Array, ""]
@@ -29,7 +29,7 @@ class Grade(eqx.Module):
     motion: Float[Array, ""]
 
     def added(self, way: Way, states: int) -> Float[Array, " n"]:
-        """Variances that a stretch adds, to first order."""
+        """Variances that a stretch of time adds, to first order."""
         seen, index = way.time - way.blind, jnp.arange(states)
         parts = (
             (PSI, self.gyro**2 * seen + UNKNOWN_TURN**2 * way.blind),
@@ -59,9 +59,9 @@ class ElevationNoise(eqx.Module):
 
 
 class CarrierNoise(eqx.Module):
-    """σ² = floor² + slope 10^(-C/N0 / 10) of a pseudorange [m²]; as `floor` and 30 dB-Hz where C/N0 is not told.
+    """σ² = floor² + slope 10^(-C/N0 / 10) of a pseudorange [m²]; 30 dB-Hz is assumed where C/N0 is unknown.
 
-    Source: Kuusniemi & Lachapelle, ION GNSS 2004, as Wang et al. 2023 cite it among the alternatives.
+    Source: Kuusniemi & Lachapelle, ION GNSS 2004, an alternative that Wang et al. 2023 cite.
     """
 
     floor: Float[Array, ""]

@@ -1,4 +1,4 @@
-"""A vehicle under water that reckons its way and hears from leaders how far away they are."""
+"""A vehicle under water with dead reckoning and acoustic ranges to its leaders."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -12,13 +12,13 @@ from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
 from sensorfault.numerics.local import east_north, on_the_map
 
 UNKNOWN_SPEED = 2.0  # standard deviation of a velocity that nothing measures [m/s]
-GAP_S = 5.0  # over a longer gap of the clock nobody knows how it went
-LOST_M = 2000.0  # with a position no better than this, ranges do not bring it back
+GAP_S = 5.0  # after a longer gap of the clock the velocity counts as unknown [s]
+LOST_M = 2000.0  # with a larger position uncertainty, ranges cannot correct the filter any more [m]
 _POSITIONS = (("latitude", "longitude", "rad"), ("north", "east", "m"), ("y", "x", "m"))
 
 
 class Leader(eqx.Module):
-    """Columns of one leader: the range to it, where it says it is (north or latitude first), and how deep."""
+    """Columns of one leader: the range to it, its reported position (north or latitude first), and its depth."""
 
     range: int = eqx.field(static=True)
     position: tuple[int, ...] = eqx.field(static=True)
@@ -26,10 +26,10 @@ class Leader(eqx.Module):
 
 
 class FollowerRoles(eqx.Module):
-    """Columns of a log by what they say of a follower; empty or None where the log does not say it.
+    """Columns of a log that describe a follower; empty or None where the log has no such channel.
 
-    `position`: north or latitude first, of a sensor without a range: where the follower begins. `velocity`: forward
-    and to the right. `geodetic`: positions are latitudes and longitudes, else metres on a plane.
+    `position`: of the follower itself (a sensor without a range), north or latitude first; its initial position.
+    `velocity`: forward and to the right. `geodetic`: positions are latitudes and longitudes, else metres on a plane.
     """
 
     leaders: tuple[Leader, ...] = ()
@@ -41,7 +41,7 @@ class FollowerRoles(eqx.Module):
 
 
 def roles(log: Log) -> FollowerRoles:
-    """A leader is a sensor with a `range` [m] and a position; the rest are the first channels of each name and unit.
+    """A leader is a sensor with a `range` [m] and a position; other roles: the first channel with each name and unit.
 
     A position is `latitude` and `longitude`, or `north` and `east` or `y` and `x` in metres, all of one kind.
     """
@@ -84,10 +84,10 @@ def _position(log: Log, sensor: str, northward: str, eastward: str, unit: str) -
 class Follower(eqx.Module):
     """State: latitude and longitude [rad], or north and east [m]. Xu et al. 2023, (1)-(5), on the ellipsoid itself.
 
-    The way to a leader is a difference of angles times the radii between the two: the absolute longitudes of (3) and
-    (4), each times a radius of its own, would make 563 m of 300 m to the north at 45 degrees. Ranges are slant ranges,
-    so the depths stand in h. `q`: variance that one second of dead reckoning adds [m²/s]; `start_m`: standard deviation
-    of the fix it begins at.
+    The distance to a leader is a difference of angles times the radii between the two. The printed (3) and (4) multiply
+    each absolute longitude by its own radius, which turns 300 m to the north at 45 degrees into 563 m. Ranges are slant
+    ranges, so h contains the depths. `q`: variance that one second of dead reckoning adds [m²/s]; `start_m`: standard
+    deviation of the initial fix.
     """
 
     q: Float[Array, ""]
@@ -118,7 +118,7 @@ class Follower(eqx.Module):
         self, state: Float[Array, "2"], spread: Float[Array, "2"], sample: Sample, dt: Float[Array, ""]
     ) -> Float[Array, "2"]:
         known = self._reckoned(sample) & (dt <= GAP_S)
-        # a speed that nobody knows is the same from tick to tick: (σ + u Δt)² - σ²
+        # an unknown speed stays the same from tick to tick: (σ + u Δt)² - σ²
         way = UNKNOWN_SPEED * dt
         unknown = way * (way + 2 * spread * self._metres(state))
         return jnp.sqrt(self.q * dt + jnp.where(known, 0.0, unknown)) / self._metres(state)
@@ -153,9 +153,9 @@ class Follower(eqx.Module):
         return on_the_map(*position) if self.roles.geodetic else jnp.isfinite(position).all()
 
     def _reckoned(self, sample: Sample) -> Bool[Array, ""]:
-        """Whether velocity and heading are there."""
+        """Whether velocity and heading are present."""
         if not self.roles.velocity or self.roles.heading is None:
-            return jnp.ones((), bool)  # a random walk: q says it all
+            return jnp.ones((), bool)  # a random walk, which q describes
         return picked(sample.present, (*self.roles.velocity, self.roles.heading)).all()
 
     def _metres(self, state: Float[Array, "2"]) -> Float[Array, "2"]:

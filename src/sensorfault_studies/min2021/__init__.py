@@ -1,1 +1,3 @@
-"""Min et al. 2021: shorts, jams, abnormal motion, bias and miss of a car's sensors. One experiment a file."""
+"""Min et al. 2021: spike, frozen, offset and missing faults of a car's sensors (short, jam, bias and miss in the
+paper), and abnormal motion.
+"""

@@ -1,5 +1,6 @@
-"""Experiment A4: offsets and silences in a whole car, watched by one recipe under one promise; beside them spikes and
-frozen channels of the inertial unit (frozen positions are experiment A2).
+"""Experiment A4: offset and missing faults in a whole car, with one recipe and one false alarm budget.
+
+Also spike and frozen faults of the inertial unit; frozen positions are experiment A2.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -44,48 +45,48 @@ class _Drive:
 
 
 def bias_miss(effort: Effort) -> Findings:
-    """Recall, delay and naming by kind, channel and size, on the last 40 % of both real drives."""
+    """Recall, delay and isolation by kind, channel and size, on the last 40 % of both real drives."""
     rows: list[Row] = []
     for n, (name, folder) in enumerate(DRIVES.items()):
 
-        def tell(share: float, name: str = name, n: int = n) -> None:
-            effort.tell(f"A4 {name}", (n + share) / len(DRIVES))
+        def progress(share: float, name: str = name, n: int = n) -> None:
+            effort.progress(f"A4 {name}", (n + share) / len(DRIVES))
 
-        tell(0.0)
+        progress(0.0)
         log = read(real(folder))
         cut = float(log.time[0]) + LEARN * log.duration_s
         model = recipe(METHOD).build(log.between(end_s=cut), 0, Session())
         rest = log.between(cut)
         drive = _Drive(name, model, rest, detect(model, rest))
         rows += _clean(drive)
-        cells = tabulate(_outcomes(drive, effort, tell), drive.clean)
+        cells = tabulate(_outcomes(drive, effort, progress), drive.clean)
         rows += [row for cell in cells for row in _rows(drive, cell, effort.seeds)]
     return Findings(tuple(rows), (), _remarks(rows))
 
 
 def _clean(drive: _Drive) -> Iterator[Row]:
-    """False alarms where nothing was injected, an hour, with the bound that so short a time allows."""
+    """False alarms an hour without injected faults, with the upper 95 % bound for so short a time."""
     alarms, hours = len(drive.clean.events), drive.rest.duration_s / 3600
     for condition, value in (("per-hour", alarms / hours), ("per-hour bound95", rate_below(alarms, hours))):
         yield Row("A4", drive.name, "real", condition, METHOD, None, None, "far", value)
 
 
-def _outcomes(drive: _Drive, effort: Effort, tell: Callable[[float], None]) -> list[Outcome]:
-    """Each fault struck in a copy of the rest, several in one copy where there is room between them."""
-    result: list[Outcome] = []
+def _outcomes(drive: _Drive, effort: Effort, progress: Callable[[float], None]) -> list[Outcome]:
+    """Inject every fault into a copy of the rest; several in one copy if they fit with pauses between them."""
+    outcomes: list[Outcome] = []
     wanted = [one for _ in range(1 if effort.quick else effort.seeds) for one in _wanted(drive.rest, effort.quick)]
     batches = list(_batches(wanted, drive.rest.duration_s))
     for seed, batch in enumerate(batches):
         faults = plan(drive.rest, batch, pause_s=PAUSE_S, seed=seed)
-        struck = [part for fault in faults for part in _parts(fault, drive.rest, seed)]
-        found = detect(drive.model, inject(drive.rest, struck, seed).log)
-        result += judge(found, faults).outcomes
-        tell((seed + 1) / len(batches))
-    return result
+        injected = [part for fault in faults for part in _parts(fault, drive.rest, seed)]
+        found = detect(drive.model, inject(drive.rest, injected, seed).log)
+        outcomes += judge(found, faults).outcomes
+        progress((seed + 1) / len(batches))
+    return outcomes
 
 
 def _wanted(log: Log, quick: bool) -> Iterator[Fault]:
-    """One of each; of those on the position, whose direction is drawn by lot, four."""
+    """One fault of each kind, channel and size; four of each on the position, in random directions."""
     for channel in (c for c in log.channels if c.name in ("x", "y", "z")):
         for size in SIGMAS[-1:] if quick else SIGMAS:
             yield Fault("offset", channel.sensor, channel.name, 0.0, BIAS_S, size, sigmas=True)
@@ -95,12 +96,12 @@ def _wanted(log: Log, quick: bool) -> Iterator[Fault]:
     for metres in METRES[-1:] if quick else METRES:
         yield from 4 * [Fault("offset", receiver, None, 0.0, BIAS_S, metres)]
     for sensor in log.sensors:
-        received = (silence_s for silence_s in SILENCES_S if silence_s > MISSED * sensor.period_s)
-        yield from (Fault("missing", sensor.name, None, 0.0, silence_s, silence_s) for silence_s in received)
+        noticeable = (silence_s for silence_s in SILENCES_S if silence_s > MISSED * sensor.period_s)
+        yield from (Fault("missing", sensor.name, None, 0.0, silence_s, silence_s) for silence_s in noticeable)
 
 
 def _batches(wanted: Sequence[Fault], room_s: float) -> Iterator[list[Fault]]:
-    """As many faults at once as the log has room for, in shuffled order."""
+    """Batches of as many faults as fit into the log, in random order."""
     batch: list[Fault] = []
     for i in np.random.default_rng(0).permutation(len(wanted)):
         needed = sum(fault.duration_s + PAUSE_S for fault in [*batch, wanted[i]]) + 2 * PAUSE_S
@@ -113,7 +114,7 @@ def _batches(wanted: Sequence[Fault], room_s: float) -> Iterator[list[Fault]]:
 
 
 def _parts(fault: Fault, log: Log, seed: int) -> list[Fault]:
-    """An offset of the whole receiver is one of its position: latitude and longitude, so many metres one way."""
+    """An offset of the whole receiver is an offset of its position in one direction, in latitude and longitude."""
     if fault.channel is not None or fault.kind == "missing":
         return [fault]
     latitude = float(np.nanmedian(log.value[:, log.index("latitude")]))
@@ -125,24 +126,24 @@ def _parts(fault: Fault, log: Log, seed: int) -> list[Fault]:
 
 
 def _rows(drive: _Drive, cell: Cell, seeds: int) -> Iterator[Row]:
-    """Recall of the right sensor, delay and naming, beside what chance finds."""
+    """Recall with correct isolation, delay and kind, and the probability of an alarm by chance."""
     size = cell.magnitude if cell.kind != "frozen" else JAM_S
-    result = {
+    measured = {
         "detection_rate": cell.recall * cell.sensor_right if cell.recall else 0.0,
         "chance": cell.chance,
         "delay_s": cell.delay_p50_s,
         "kind_right": cell.kind_right,
     }
-    for metric, value in result.items():
+    for metric, value in measured.items():
         condition = f"{cell.channel} n{cell.faults}"
         yield Row("A4", drive.name, "injected", condition, METHOD, cell.kind, size, metric, value, None, seeds)
 
 
 def _remarks(rows: Sequence[Row]) -> tuple[str, ...]:
-    """The smallest offset on each sensor that is found in nine of ten, as one sentence a drive."""
+    """The smallest offset on each sensor that is detected in nine of ten cases, as one sentence for each drive."""
     rates = [row for row in rows if row.fault == "offset" and row.metric == "detection_rate"]
     return tuple(
-        f"A4, {name}: smallest offset of those tried that is found and laid to the right sensor in nine of ten: "
+        f"A4, {name}: smallest tested offset that is detected and isolated correctly in nine of ten cases: "
         + ", ".join(_least(where, [row for row in rates if row.data == name]) for where in _places(rates, name))
         + "."
         for name in dict.fromkeys(row.data for row in rows)

@@ -1,4 +1,4 @@
-"""The detectors of shorts that A1 compares, each fitted on the healthy part of a drive, with the time of its fit."""
+"""The methods that A1 compares on spikes, fitted on the healthy part of a drive, with the time of the fit."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,16 +21,16 @@ from sensorfault.training.session import Session
 
 Build = Callable[[Log, int], tuple[Model, float]]
 
-# As backpropagation is usually done: Adam at its own rate, until the error on rows not learned from stops falling.
+# The usual backpropagation: Adam at its default rate, until the error on validation rows stops falling.
 PLAN = Plan(epochs=300, batch=32, rate=1e-3, patience=30)
 QUICK = Plan(epochs=30, batch=32, rate=1e-3, patience=30)
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """`build(log, seed)`: the model, and how long the fit of its weights took [s].
+    """A method to compare. `build(log, seed)` gives the model and the time of its fit [s].
 
-    `limit`: how its limit was set. `chance`: whether the seed matters. `main`: in every table; the others explain.
+    `limit`: how its limit is set. `chance`: whether the seed matters. `main`: shown in every table, not only for AUC.
     """
 
     method: str
@@ -42,7 +42,7 @@ class Candidate:
 
 
 def candidates(quick: bool) -> tuple[Candidate, ...]:
-    """The paper's two networks, two plain methods, and the same networks too small or too stiff to copy."""
+    """The paper's two networks, two baselines, and the networks with too few units or a ridge too strong to copy."""
     main = (
         Candidate("elm-autoencoder", "L32 C1e3", _elm(32, 1e3)),
         Candidate("bp-autoencoder", "L32", _backprop(32, QUICK if quick else PLAN)),
@@ -61,7 +61,7 @@ def candidates(quick: bool) -> tuple[Candidate, ...]:
 
 
 def _elm(hidden: int, c: float) -> Build:
-    # A fit of milliseconds is over before the machine is at its own speed: the fastest of ten is its time.
+    # A fit of milliseconds ends before the processor reaches full speed: the fastest of ten counts.
     return _timed("elm-autoencoder", lambda seed: lambda rows, scaling: fit_elm(rows, scaling, hidden, c, seed), 10)
 
 

@@ -15,32 +15,32 @@ from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.threshold.scaled_max import ScaledMax
 from sensorfault_studies.min2021.roc import folds
 
-Subject = Callable[[str], bool]  # whether a test of that name is asked
+Subject = Callable[[str], bool]  # whether to include the test of that name
 
 
 @dataclass(frozen=True)
-class Said:
+class Scores:
     """At each fix: the largest score over its limit, 0 where nothing was tested, and whether the channels are FAULT.
 
-    `score` is what the tests say when nothing they say has consequences (no window is refilled, no reference refused);
-    `fault` is the verdict of the monitor as it runs.
+    `score` is in open loop: no window is refilled and no reference rejected; `fault` is the verdict of the monitor in
+    closed loop.
     """
 
     score: Float[np.ndarray, " N"]
     fault: Bool[np.ndarray, " N"]
 
 
-def said(model: Model, log: Log, rows: Int[np.ndarray, " N"], channels: tuple[int, ...], subject: Subject) -> Said:
-    """A model's word on these channels, at these rows."""
-    asked = np.array([subject(name) for name, _ in model.tests])
+def scored(model: Model, log: Log, rows: Int[np.ndarray, " N"], channels: tuple[int, ...], subject: Subject) -> Scores:
+    """Scores and verdicts of a model on these channels, at these rows."""
+    included = np.array([subject(name) for name, _ in model.tests])
     score = np.concatenate([np.asarray(x) for x in replay_log(uncalibrated(model.monitor), log).scores], axis=1)[rows]
-    ratio = np.where(np.isfinite(score) & asked, score / limits(model), 0.0).max(axis=1)
+    ratio = np.where(np.isfinite(score) & included, score / limits(model), 0.0).max(axis=1)
     verdict = np.asarray(replay_log(model.monitor, log).channel)[rows]
-    return Said(ratio, (verdict[:, list(channels)] == FAULT).any(axis=1))
+    return Scores(ratio, (verdict[:, list(channels)] == FAULT).any(axis=1))
 
 
 def limits(model: Model) -> Float[np.ndarray, " K"]:
-    """One number a test: of a limit that follows the score, its fixed point."""
+    """One number for each test; for a limit that depends on the score, its fixed point."""
     each = (branch.threshold for branch in model.monitor.branches)
     numbers = [one.fixed_point() if isinstance(one, ScaledMax) else getattr(one, "limit", np.nan) for one in each]
     return np.concatenate([np.atleast_1d(np.asarray(number)) for number in numbers])
@@ -66,9 +66,9 @@ def counted(frozen: Bool[np.ndarray, " N"], flagged: Bool[np.ndarray, " N"]) -> 
 def at_rate(
     time: Float[np.ndarray, " N"], healthy: Float[np.ndarray, " N"], score: Float[np.ndarray, " N"], rate: float
 ) -> Bool[np.ndarray, " N"]:
-    """Flags under the limit that every other ten seconds of the untouched drive put at this false-alarm rate.
+    """Alarms with the limit for this false alarm rate, set on every other ten seconds of the drive without faults.
 
-    Each half is judged by the limit of the other.
+    Each half is tested with the limit of the other half.
     """
     odd = folds(time)
     flagged = np.zeros(len(time), bool)
@@ -78,12 +78,12 @@ def at_rate(
 
 
 def flag_all(frozen: Bool[np.ndarray, " N"]) -> dict[str, float]:
-    """What calling every fix frozen brings."""
+    """Numbers if every fix is called frozen."""
     return counted(frozen, np.ones(len(frozen), bool)) | {"auc": 0.5, "prevalence": float(frozen.mean())}
 
 
 def at_random(prevalence: float, rate: float) -> dict[str, float]:
-    """What flags thrown at this rate bring in expectation: no fault makes them likelier."""
+    """Expected numbers of random alarms at this rate."""
     accuracy = prevalence * rate + (1 - prevalence) * (1 - rate)
     f1 = 2 * prevalence * rate / (prevalence + rate)
     return {"accuracy": accuracy, "precision": prevalence, "recall": rate, "f1": f1, "far": rate, "auc": 0.5}

@@ -1,4 +1,4 @@
-"""Where jams are struck: while the car moves, as many as fit, in the part of a drive that nobody was fitted on."""
+"""Inject frozen positions while the car moves, as many as fit, into the part of a drive not used for the fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,14 +14,14 @@ from sensorfault.vehicles.car import LEAST_SPEED, Roles, moving, roles
 from sensorfault_studies.data import real
 
 LEARN = 0.6
-RECOVERY_S = 1.0  # after a jam nothing is scored for so long
-WARM_S = 3.0  # ... nor at the beginning
-PAUSE = (1.0, 2.0)  # healthy time after a jam and its recovery, in lengths of the jam, drawn evenly between these
+RECOVERY_S = 1.0  # this long after a fault is not scored [s]
+WARM_S = 3.0  # nor is the beginning [s]
+PAUSE = (1.0, 2.0)  # healthy time after a fault and its recovery, in lengths of the fault, uniform between these
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A real drive: the part to learn from, the rest, and the rows of the rest that bring a new position."""
+    """A real drive: the training part, the rest, and the rows of the rest with a new position."""
 
     name: str
     learn: Log
@@ -41,14 +41,14 @@ class Drive:
 
     @property
     def fixes(self) -> Int[np.ndarray, " N"]:
-        """Rows with a new position, once every method is warm."""
+        """Rows with a new position, after the start of all methods."""
         warm = self.rest.time >= self.rest.time[0] + WARM_S
         return np.flatnonzero(self.rest.fresh[:, self.position[0]] & warm)
 
 
 @dataclass(frozen=True)
 class Jammed:
-    """A copy of the rest with frozen positions; of its fixes which are frozen, and which are scored."""
+    """A copy of the rest with frozen positions; which of its fixes are frozen, and which are scored."""
 
     log: Log
     onsets: tuple[float, ...]
@@ -57,7 +57,7 @@ class Jammed:
 
 
 def onsets(drive: Drive, length_s: float, seed: int) -> tuple[float, ...]:
-    """As many jams as fit, the car faster than LEAST_SPEED throughout each; the seed moves them."""
+    """Onsets of as many faults as fit, with the car faster than LEAST_SPEED throughout; the seed shifts them."""
     rest, rng = drive.rest, np.random.default_rng([seed, round(10 * length_s)])
     assert drive.roles.velocity is not None
     received = rest.time[rest.fresh[:, drive.roles.velocity[0]]]
@@ -75,7 +75,7 @@ def onsets(drive: Drive, length_s: float, seed: int) -> tuple[float, ...]:
 
 
 def jammed(drive: Drive, length_s: float, seed: int, channels: Sequence[str] = ("latitude", "longitude")) -> Jammed:
-    """The receiver's `channels` frozen: at each of its epochs they read what they read before the onset."""
+    """The receiver's `channels` frozen: at each of its epochs they repeat the value before the onset."""
     sensor = drive.rest.channels[drive.position[0]].sensor
     at = onsets(drive, length_s, seed)
     faults = [Fault("frozen", sensor, name, onset, length_s) for onset in at for name in channels]

@@ -1,4 +1,4 @@
-"""One detector of shorts on one drive, seed by seed: how well it ranks, what it finds at which price."""
+"""One method on the spikes of one drive, seed by seed: AUC, recall and false alarm rate."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -22,11 +22,10 @@ Key = tuple[str, str, float | None]  # condition, metric, magnitude
 
 @dataclass
 class Judged:
-    """`number`: one value a seed. `left`: share of a channel's sigma that the model leaves of healthy rows.
+    """The numbers of one method on one drive, one value for each seed.
 
-    `spike_left`: share that it leaves of spikes of PLAIN sigmas.
-
-    `curve`: false-alarm rate and recall over all sizes together, of the first seed.
+    `left`: healthy residual as a share of a channel's sigma. `spike_left`: share of a spike of PLAIN sigmas that
+    remains in the residual. `curve`: false alarm rate and recall over all sizes, of the first seed.
     """
 
     number: dict[Key, list[float]] = field(default_factory=dict)
@@ -35,49 +34,49 @@ class Judged:
     curve: tuple[list[float], list[float]] = ([], [])
 
     def add(self, condition: str, metric: str, size: float | None, value: float) -> None:
-        """One more seed's value."""
+        """Add the value of one more seed."""
         self.number.setdefault((condition, metric, size), []).append(value)
 
     def mean(self, condition: str, metric: str, size: float | None = None) -> float:
-        """Over the seeds."""
+        """Mean over the seeds."""
         return float(np.mean(self.number[condition, metric, size]))
 
 
 def judge(drive: Drive, rival: Candidate, sizes: Sequence[float], seeds: range) -> Judged:
-    """Fit, replay the rest of the drive untouched and spiked, count."""
-    result = Judged()
+    """Fit, replay the rest of the drive without and with spikes, and count."""
+    judged = Judged()
     odd = folds(drive.rest.time)
     model = None
     for seed in seeds:
         if model is None or rival.chance:
             model, took = rival.build(drive.learn, seed)
-            result.add(rival.condition, "fit_s", None, took)
-            result.left.append(float(np.mean(np.array(model.sigma) / drive.sigma)))
+            judged.add(rival.condition, "fit_s", None, took)
+            judged.left.append(float(np.mean(np.array(model.sigma) / drive.sigma)))
         monitor = uncalibrated(model.monitor)
         clean = judged_rows(monitor, drive.rest)
         healthy = clean.score
-        result.add(rival.limit, "far", None, float(over(model, healthy).mean()))
-        all_scores, all_struck = [], []
+        judged.add(rival.limit, "far", None, float(over(model, healthy).mean()))
+        all_scores, all_faulty = [], []
         for size in sizes:
-            log, struck = spiked(drive, size, seed)
+            log, faulty = spiked(drive, size, seed)
             there = judged_rows(monitor, log)
             score = there.score
             if size == PLAIN:
-                result.spike_left.append(left_of_spikes(drive, log, there, clean))
-            result.add(rival.condition, "auc", size, auc(score, struck))
-            result.add(rival.limit, "recall", size, float(over(model, score)[struck].mean()))
+                judged.spike_left.append(left_of_spikes(drive, log, there, clean))
+            judged.add(rival.condition, "auc", size, auc(score, faulty))
+            judged.add(rival.limit, "recall", size, float(over(model, score)[faulty].mean()))
             for name, rate in RATES.items():
-                recall, false = detected(healthy, score, struck, odd, rate)
-                result.add(name, "recall", size, recall)
+                recall, false = detected(healthy, score, faulty, odd, rate)
+                judged.add(name, "recall", size, recall)
                 if size == sizes[0]:
-                    result.add(name, "far", None, false)
+                    judged.add(name, "far", None, false)
             all_scores.append(score)
-            all_struck.append(struck)
-        pooled, marks = np.concatenate(all_scores), np.concatenate(all_struck)
-        result.add(f"{rival.condition} pooled", "auc", None, auc(pooled, marks))
-        result.add(f"{rival.limit} fixed-point", "agreement", None, agreement(model, pooled))
-        result.curve = result.curve if result.curve[0] else curve(pooled, marks)
-    return result
+            all_faulty.append(faulty)
+        pooled, marks = np.concatenate(all_scores), np.concatenate(all_faulty)
+        judged.add(f"{rival.condition} pooled", "auc", None, auc(pooled, marks))
+        judged.add(f"{rival.limit} fixed-point", "agreement", None, agreement(model, pooled))
+        judged.curve = judged.curve if judged.curve[0] else curve(pooled, marks)
+    return judged
 
 
 def _limit(model: Model) -> ScaledMax:
@@ -87,12 +86,12 @@ def _limit(model: Model) -> ScaledMax:
 
 
 def over(model: Model, score: Float[np.ndarray, " T"]) -> Bool[np.ndarray, " T"]:
-    """Which scores the fitted limit (10)-(11) calls a fault, by its one fixed point."""
+    """Which scores exceed the fitted limit (10)-(11), by its only fixed point."""
     return np.asarray(score > float(_limit(model).fixed_point()[0]))
 
 
 def agreement(model: Model, score: Float[np.ndarray, " T"]) -> float:
-    """Share of the scores on which the limit that follows the score, (11), decides as its fixed point does."""
+    """Share of the scores for which the limit (11), which depends on the score, decides like its fixed point."""
     # (10), (11) delta = (1 + 1 / (1 + e^score)) max(err)
     delta = (1 + 1 / (1 + np.exp(np.minimum(score, 700.0)))) * np.asarray(jnp.squeeze(_limit(model).largest))
     return float(((score > delta) == over(model, score)).mean())

@@ -1,4 +1,4 @@
-"""Experiment A3: is what the bicycle's filter leaves normal, and what does it find. Figure 6 of the paper."""
+"""Experiment A3: are the innovations of the bicycle filter normal, and what does it detect? Figure 6 of the paper."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from sensorfault_studies.data import real
 from sensorfault_studies.findings import Effort, Findings, Row
 from sensorfault_studies.min2021.normality_faults import BIASES_M, Judged, biases, felt, motions
 from sensorfault_studies.min2021.normality_figures import figures
-from sensorfault_studies.min2021.normality_sizes import made, sizes
+from sensorfault_studies.min2021.normality_sizes import simulated, sizes
 
 DRIVES = {"dresden_50hz": "road/dresden_50hz", "drive0708": "road/gnss_imu_drive0708", "rav4": "road/comma2k19_rav4"}
 RAV4_WHEELBASE_M = 2.65
@@ -22,31 +22,33 @@ LEARN = 0.6
 METHOD = "bicycle-kalman"
 RIVALS = ("motion-deficit", "side-force", "car")
 REMARKS = (
-    "Jarque and Bera's statistic of the paper stays below 0.34 over a whole test drive; of 500 independent normal "
-    "numbers only one window in six does, so so small a maximum says that the residuals were smoothed, not normal. "
-    "On real logs it is far larger: innovations at 50 Hz repeat each other, and a receiver's errors come in bursts.",
-    "The test does not change when all residuals are shifted or scaled: it is a reading beside the mean, the variance "
-    "and the whitened innovation, never alone.",
-    "The errors of a GNSS receiver that smooths its fixes are correlated over time. The spread of the innovations is "
-    "fitted, their independence is not: the limits come from healthy blocks of time, not from a table.",
-    "Dresden's training part holds a jump of the position of 5 m (28.9 s) and others of a metre; limits from the "
-    "quartiles of the blocks do not learn them, and the model names them when it is run over its own training drive.",
-    "Without a speed told by wheels a wheel slip is no fault that anything feels: the receiver tells the true speed. "
-    "On the RAV4 (steering-angle form of (16), wheelbase 2.65 m, steering ratio learned) it is injected; the drive of "
-    "60 s is too short to calibrate the windows, which therefore stay silent there.",
-    "Dresden's receiver is late by 0.9 s, so that healthy turns look like slides, of which the filter finds hardly any "
-    "there. The side force felt against speed times turn rate (side-force) does not ask the receiver where the car "
-    "went: it finds slides from about 2 m/s. Slighter and slower ones stay within what a bumpy road does.",
-    "A position that is off is told as a motion here: the method takes the sensors for healthy, as the paper does. "
-    "A recipe that tests the sensors first says which of the two it is.",
+    "In the paper the Jarque-Bera statistic stays below 0.34 over a whole test drive. Of windows of 500 independent "
+    "normal numbers only one in six does, so such a small maximum shows that the residuals were smoothed, not that "
+    "they are normal. On real logs the statistic is far larger: innovations at 50 Hz are correlated, and a "
+    "receiver's errors come in bursts.",
+    "The statistic does not change if all residuals are shifted or scaled. It must be used together with the mean, the "
+    "variance and the whitened innovation, never alone.",
+    "The errors of a GNSS receiver that smooths its fixes are correlated over time. The fit sets the spread of the "
+    "innovations but cannot make them independent, so the limits come from healthy blocks of time, not from a table.",
+    "The training part of the Dresden drive contains a position jump of 5 m (at 28.9 s) and others of a metre. Limits "
+    "from the quartiles of the block maxima do not learn them, and the model reports them on its own training drive.",
+    "Without a wheel speed sensor no channel shows a wheel slip, because the receiver measures the true speed. On "
+    "the RAV4 (steering-angle form of (16), wheelbase 2.65 m, steering ratio fitted) the slip is injected; its drive "
+    "of 60 s is too short to calibrate the windows, which therefore raise no alarm there.",
+    "The receiver of the Dresden drive has a lag of 0.9 s, so healthy turns look like slides and the filter detects "
+    "hardly any slide there. The measured side force against speed times turn rate (side-force) does not use the "
+    "receiver's position: it detects slides from about 2 m/s. Smaller and slower slides are within the effect of a "
+    "bumpy road.",
+    "A position fault is reported as abnormal motion here: the method assumes healthy sensors, as the paper does. A "
+    "recipe that tests the sensors first can separate the two.",
 )
 
 
 def judged(data: str, method: str = METHOD) -> Judged:
-    """A drive, the method fitted on its first part.
+    """A drive, with the method fitted on its first part.
 
     Raises:
-        LogError: the real logs are not there.
+        LogError: the real logs do not exist.
     """
     log = read(real(DRIVES[data]))
     if data == "rav4":
@@ -57,13 +59,13 @@ def judged(data: str, method: str = METHOD) -> Judged:
 
 
 def normality(effort: Effort) -> Findings:
-    """All numbers of A3 on the three drives; `quick`: a few trials on one drive."""
-    rows: list[Row] = list(made(effort.seeds))
+    """All numbers of A3 on the three drives; with `quick` a few trials on one drive."""
+    rows: list[Row] = list(simulated(effort.seeds))
     drawn = []
     drives = ("dresden_50hz",) if effort.quick else tuple(DRIVES)
     trials = 5 if effort.quick else 20
     for k, data in enumerate(drives):
-        effort.tell(f"A3 {data}", k / len(drives))
+        effort.progress(f"A3 {data}", k / len(drives))
         one = judged(data)
         rows += _spreads(one)
         if not effort.quick and data != "rav4":
@@ -89,7 +91,7 @@ def _whole(one: Judged) -> Log:
 
 
 def _spreads(one: Judged) -> list[Row]:
-    """Standard deviation of each normalised innovation on the part learned from and the rest."""
+    """Standard deviation of each normalised innovation on the training part and on the rest."""
     rows = []
     whole = _whole(one)
     signal = normalised(one.filter, whole)

@@ -1,4 +1,4 @@
-"""What the bicycle's filter finds: a position that is off, a car that moves as no bicycle does; and whom it accuses."""
+"""Detection by the bicycle filter: position offsets, and motions that no bicycle makes; and false isolations."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,9 +23,9 @@ from sensorfault.training.mounting import fit_mounting
 from sensorfault.vehicles.car import LEAST_SPEED, moving, roles
 from sensorfault_studies.findings import Row
 
-WARM_S = 15.0  # of the judged part before the first fault
-WITHIN_S = 5.0  # of its onset a fault is found in
-AFTER_S = 3.0  # a window's alarm may come so long after the motion
+WARM_S = 15.0  # time of the test part before the first fault [s]
+WITHIN_S = 5.0  # a fault must be detected within this time of its onset [s]
+AFTER_S = 3.0  # an alarm of a window may come this long after the motion [s]
 BIASES_M = (0.3, 0.5, 1.0, 2.0)
 NORMS = ("length", "largest")
 # kind, length [s], size as in faults/motion.py
@@ -39,7 +39,7 @@ TURNED = (
 
 @dataclass(frozen=True)
 class Judged:
-    """A drive, the model fitted on its first part, the part that is judged, and the columns that feel a motion."""
+    """A drive, the model fitted on its first part, the test part, and the columns that a motion affects."""
 
     data: str
     learn: Log
@@ -55,12 +55,12 @@ class Judged:
 
 
 def felt(learn: Log) -> Felt:
-    """By the roles of the channels, and the mounting where the drive tells it."""
+    """The columns that a motion affects, by their roles, and the mounting if the drive shows it."""
     found = roles(learn)
     assert found.position is not None
     assert found.velocity is not None
     wheels = tuple(i for i, c in enumerate(learn.channels) if c.sensor in ("speed", "wheels"))
-    if wheels:  # too straight a drive to tell how its inertial unit sits: only the wheels are made to slip
+    if wheels:  # the drive is too straight to fit the mounting: only the wheels slip
         return Felt(found.position, found.velocity, found.polar, wheels=wheels)
     mounted = fit_mounting(learn, found)
     axes = [tuple(float(x) for x in axis) for axis in (mounted.forward, mounted.left, mounted.axis)]
@@ -68,7 +68,7 @@ def felt(learn: Log) -> Felt:
 
 
 def onsets(judged: Judged, count: int, length_s: float, fast: float = 0.0) -> list[float]:
-    """Evenly over the judged part, where the car is faster than `fast` from onset to end."""
+    """Onsets spread evenly over the test part, where the car is faster than `fast` from onset to end."""
     time = judged.rest.time
     found = roles(judged.rest)
     times = np.linspace(time[0] + WARM_S, time[-1] - length_s - WITHIN_S, 3 * count)
@@ -87,7 +87,7 @@ def _covered(going: Float[np.ndarray, " N"], start: float, end: float, gap: floa
 
 
 def biases(judged: Judged, count: int, metres: Sequence[float] = BIASES_M) -> list[Row]:
-    """A position off by so many metres in some direction from the onset on: found within 5 s by one sample's test."""
+    """A position offset of so many metres in a random direction: detected within 5 s by the test of one sample?"""
     columns, branches = judged.filter.columns, judged.model.monitor.branches
     largest = Whitened((columns.position, columns.velocity), len(judged.rest.channels), joint=False)
     second = Branch(largest, Fixed(jnp.full(2, jnp.inf)), subject=MOTION)
@@ -114,7 +114,7 @@ def biases(judged: Judged, count: int, metres: Sequence[float] = BIASES_M) -> li
         chance = [_first(score, rest.time, start, limit) is not None for start in starts]
         row(name, None, None, "chance", float(np.mean(chance)))
         row(name, None, None, "limit", limit)
-    # when the fix was measured that a row holds
+    # the time at which the fix in a row was measured
     of_fix = rest.time[np.maximum.accumulate(np.where(rest.fresh[:, latitude], np.arange(len(rest)), 0))]
     for size in metres:
         found: list[list[float | None]] = [[], []]
@@ -142,25 +142,25 @@ def _first(score: Float[np.ndarray, " T"], time: Float[np.ndarray, " T"], start:
 
 
 def motions(judged: Judged, rivals: Sequence[Model], count: int) -> list[Row]:
-    """Motions that no bicycle makes: share reported as motion, and share in which a sensor is accused."""
+    """Motions that no bicycle makes: share reported as motion, and share with a sensor named."""
     wanted = WHEELED if judged.felt.wheels else TURNED
     models = (judged.model, *rivals)
     clean = [detect(model, judged.rest).events for model in models]
     rows = []
     for kind, length_s, size in wanted:
         starts = onsets(judged, count, length_s, LEAST_SPEED)
-        result = np.zeros((len(models), 4))  # found as motion, a sensor accused, the same without the fault
+        counted = np.zeros((len(models), 4))  # reported as motion, a sensor named, and both without the fault
         for k, start in enumerate(starts):
             fault = MotionFault(kind, start, length_s, size if k % 2 or kind == "wheel slip" else -size)
             log = move(judged.rest, fault, judged.felt)
             for m, model in enumerate(models):
                 for at, events in ((0, detect(model, log).events), (2, clean[m])):
                     here = [e for e in events if e.start_s <= fault.end_s + AFTER_S and (e.end_s or np.inf) >= start]
-                    result[m, at] += any(e.subject == "motion" for e in here)
-                    result[m, at + 1] += any(e.subject == "sensor" and e.kind != "missing" for e in here)
+                    counted[m, at] += any(e.subject == "motion" for e in here)
+                    counted[m, at + 1] += any(e.subject == "sensor" and e.kind != "missing" for e in here)
         name = f"{kind} {length_s:g}s".replace(" ", "-")
         many = len(starts)
-        for model, counts in zip(models, result, strict=True):
+        for model, counts in zip(models, counted, strict=True):
             for metric, c in zip(("detection_rate", "wrong_exclusions", "chance", "chance_wrong"), counts, strict=True):
                 share = float(c) / max(many, 1)
                 rows.append(

@@ -1,4 +1,4 @@
-"""Figures of A3: what the filter leaves against a normal law (figure 6 of the paper), and the statistic over time."""
+"""Figures of A3: innovations against the normal distribution (figure 6 of the paper), and Jarque-Bera over time."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from sensorfault_studies.min2021.normality_faults import Judged
 
 
 def figures(data: str, one: Judged, whole: Log, kept: dict[str, list[np.ndarray]]) -> list[Figure]:
-    """Both, of one drive."""
+    """Both figures of one drive."""
     return [_histogram(data, one, whole), _over_time(data, one, whole)]
 
 
@@ -26,7 +26,12 @@ def _histogram(data: str, one: Judged, whole: Log) -> Figure:
     plot = {
         "data": [
             {"type": "bar", "name": "innovations", "x": middle.tolist(), "y": density.tolist()},
-            {"type": "scatter", "name": "normal, as claimed", "x": middle.tolist(), "y": normal.tolist()},
+            {
+                "type": "scatter",
+                "name": "normal, as predicted",
+                "x": middle.tolist(),
+                "y": normal.tolist(),
+            },
             {"type": "scatter", "name": "normal, fitted", "x": middle.tolist(), "y": fitted.tolist()},
         ],
         "layout": {
@@ -35,9 +40,10 @@ def _histogram(data: str, one: Judged, whole: Log) -> Figure:
         },
     }
     caption = (
-        "Narrower in the middle and wider in the tails than a normal law; the last bars hold all that lies beyond."
+        "Narrower in the middle and wider in the tails than a normal distribution; the outer bars contain everything "
+        "beyond."
     )
-    return Figure(f"a3-residuals-{data}", f"What the filter leaves, {data}", caption, plot)
+    return Figure(f"a3-residuals-{data}", f"Innovations of the position, {data}", caption, plot)
 
 
 def _over_time(data: str, one: Judged, whole: Log) -> Figure:
@@ -62,9 +68,7 @@ def _over_time(data: str, one: Judged, whole: Log) -> Figure:
         "xaxis": {"title": {"text": "time [s]"}},
         "yaxis": {"title": {"text": "Jarque-Bera"}, "type": "log"},
     }
-    caption = (
-        "On a healthy drive, decimated as the recipe does: bursts of the receiver's errors, not a fault, drive it up."
-    )
+    caption = "On a healthy drive, decimated as in the recipe: bursts of the receiver's errors raise it, not faults."
     return Figure(
         f"a3-jarque-bera-{data}", f"Jarque-Bera over time, {data}", caption, {"data": lines, "layout": layout}
     )

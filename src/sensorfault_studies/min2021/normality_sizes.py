@@ -1,4 +1,4 @@
-"""How often Jarque and Bera's test rejects what is healthy: by rate, by decimation, and on numbers made for it."""
+"""False alarm rate of the Jarque-Bera test: by sampling rate, by decimation, and on simulated numbers."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -21,7 +21,7 @@ LEAST = 8
 
 
 def jarque_bera(x: Float[np.ndarray, "*s n"]) -> Float[np.ndarray, "*s"]:
-    """Of the last axis. Min et al. 2021, equations (24)-(26)."""
+    """Jarque-Bera statistic over the last axis. Min et al. 2021, equations (24)-(26)."""
     d = x - x.mean(axis=-1, keepdims=True)
     variance = np.maximum((d**2).mean(axis=-1), 1e-300)
     skewness, kurtosis = (d**3).mean(axis=-1) / variance**1.5, (d**4).mean(axis=-1) / variance**2
@@ -29,7 +29,7 @@ def jarque_bera(x: Float[np.ndarray, "*s n"]) -> Float[np.ndarray, "*s"]:
 
 
 def windows(signal: Float[np.ndarray, " T"], time: Float[np.ndarray, " T"], every: int) -> list[np.ndarray]:
-    """What there is of a signal in each 10 s, each `every`-th value of it."""
+    """Every `every`-th value of a signal, in windows of 10 s."""
     there = np.isfinite(signal)
     x, t = signal[there][::every], time[there][::every]
     cuts = np.searchsorted(t, np.arange(time[0], time[-1], WINDOW_S))
@@ -37,7 +37,7 @@ def windows(signal: Float[np.ndarray, " T"], time: Float[np.ndarray, " T"], ever
 
 
 def interpolated(log: Log) -> Log:
-    """Every measurement put on every tick by linear interpolation, as the paper's soft synchronisation does."""
+    """Every channel interpolated linearly to every tick, as in the paper's soft synchronisation."""
     value = log.value.copy()
     for column in range(value.shape[1]):
         rows = log.fresh[:, column] & np.isfinite(value[:, column])
@@ -48,7 +48,7 @@ def interpolated(log: Log) -> Log:
 
 
 def sizes(data: str, log: Log, filter: BicycleKalman) -> tuple[list[Row], dict[str, list[np.ndarray]]]:
-    """Share of healthy windows that a test of 5 % rejects, of both channels of the position; and the windows."""
+    """Share of healthy windows of both position channels that a 5 % test rejects; and the windows."""
     position = list(filter.columns.position)
     soft = interpolated(log)
     smooth = fit_bicycle(soft, roles(soft), log.wheelbase_m, log.steering_ratio)
@@ -77,8 +77,8 @@ def sizes(data: str, log: Log, filter: BicycleKalman) -> tuple[list[Row], dict[s
     return rows, kept
 
 
-def made(seeds: int) -> Iterator[Row]:
-    """On numbers made for it: correlated ones, independent ones, and the quantiles of finite samples."""
+def simulated(seeds: int) -> Iterator[Row]:
+    """On simulated numbers: correlated, independent, and the quantiles for finite samples."""
     random = np.random.default_rng(0)
     count, n = 400 * max(seeds, 1), 500
     noise = random.standard_normal((count, n + 100))
@@ -93,7 +93,7 @@ def made(seeds: int) -> Iterator[Row]:
     for few in (20, 50, 98, 500):
         point = float(jarque_bera_quantile(float(few), 1 - LEVEL))
         yield Row("A3", "simulated", "simulated", f"n{few}", "jarque-bera", None, None, "quantile95", point)
-    # what it cannot see: each window shifted by three of its standard deviations, or made twice as wide
+    # what the test cannot detect: a window shifted by three standard deviations, or made twice as wide
     normal = noise[:, 100:]
     plain = jarque_bera(normal) > jarque_bera_quantile(float(n), 1 - LEVEL)
     for fault, changed in (("offset", normal + 3.0), ("scale", 2.0 * normal)):

@@ -1,4 +1,7 @@
-"""A1: spikes of one sample on gyro and accelerometer of two real drives. Min et al. 2021, section 4.1, figure 5."""
+"""A1: spikes of one sample (shorts in the paper) on gyro and accelerometer of two real drives.
+
+Min et al. 2021, section 4.1, figure 5.
+"""
 
 from collections.abc import Sequence
 
@@ -22,23 +25,23 @@ Pairs = list[tuple[Candidate, Judged]]
 
 
 def shorts(effort: Effort) -> Findings:
-    """Every detector on both drives at every size; with `quick` one seed, two sizes and a short training."""
+    """Every method on both drives at every size; with `quick` one seed, two sizes and a short training."""
     sizes = QUICK_SIZES if effort.quick else SIZES
     seeds = range(1 if effort.quick else effort.seeds)
     rivals = candidates(effort.quick)
     findings = Findings(())
     for i, (data, folder) in enumerate(DRIVES.items()):
-        effort.tell(f"reading {data}", i / len(DRIVES))
+        effort.progress(f"reading {data}", i / len(DRIVES))
         drive = Drive.of(folder)
         pairs: Pairs = []
         for j, rival in enumerate(rivals):
-            effort.tell(f"{rival.method} on {data}", (i + (j + 0.5) / len(rivals)) / len(DRIVES))
+            effort.progress(f"{rival.method} on {data}", (i + (j + 0.5) / len(rivals)) / len(DRIVES))
             pairs.append((rival, judge(drive, rival, sizes, seeds)))
-        findings += told_of(data, pairs, sizes)
+        findings += results(data, pairs, sizes)
     return findings
 
 
-def told_of(data: str, pairs: Pairs, sizes: Sequence[float]) -> Findings:
+def results(data: str, pairs: Pairs, sizes: Sequence[float]) -> Findings:
     """Rows, figure and remarks of one drive."""
     rows = [row for rival, judged in pairs for row in _rows(data, rival, judged)]
     return Findings(
@@ -65,7 +68,7 @@ def _rows(data: str, rival: Candidate, judged: Judged) -> list[Row]:
 
 
 def _times(data: str, pairs: Pairs) -> list[Row]:
-    """How long the two networks took to fit, the median over the seeds."""
+    """Fitting times of the two networks, the median over the seeds."""
     took = {r.method: (r.condition, judged.number[r.condition, "fit_s", None]) for r, judged in pairs if r.main}
     found = {method: float(np.median(took[method][1])) for method in PAPER_FIT_S}
     ratio = found[BACKPROP] / found[ELM]
@@ -79,10 +82,10 @@ def _times(data: str, pairs: Pairs) -> list[Row]:
 
 
 def _chance(data: str, sizes: Sequence[float]) -> list[Row]:
-    """What comes of accusing rows at random."""
-    blind = [("", size, "auc", 0.5) for size in sizes]
-    blind += [(name, size, "recall", rate) for name, rate in RATES.items() for size in sizes]
-    return [Row("A1", data, "injected", c, "chance", "spike", s, metric, value) for c, s, metric, value in blind]
+    """Expected numbers of random alarms."""
+    random = [("", size, "auc", 0.5) for size in sizes]
+    random += [(name, size, "recall", rate) for name, rate in RATES.items() for size in sizes]
+    return [Row("A1", data, "injected", c, "chance", "spike", s, metric, value) for c, s, metric, value in random]
 
 
 def _figure(data: str, pairs: Pairs) -> Figure:
@@ -91,23 +94,24 @@ def _figure(data: str, pairs: Pairs) -> Figure:
         for rival, judged in pairs
         if rival.main
     }
-    caption = f"Spikes of all sizes together on {data}, first seed; the paper's figure 5 has two of these curves."
-    return Figure(f"a1_roc_{data}", f"Shorts on {data}: receiver operating characteristic", caption, plot(lines))
+    caption = f"Spikes of all sizes on {data}, first seed; figure 5 of the paper shows two of these curves."
+    return Figure(f"a1_roc_{data}", f"Spikes on {data}: receiver operating characteristic", caption, plot(lines))
 
 
 def _remarks(data: str, pairs: Pairs) -> tuple[str, ...]:
-    """Why the paper's margin is there."""
+    """The reason for the paper's difference between both networks."""
     auc = {(r.method, r.condition): j.mean(r.condition, "auc", PLAIN) for r, j in pairs}
     main = {r.method: auc[r.method, r.condition] for r, _ in pairs if r.main}
-    result = "; ".join(
+    by_method = "; ".join(
         f"{r.method} {r.condition}: {np.mean(j.spike_left):.0%}, {np.mean(j.left):.1%}, "
         f"{auc[r.method, r.condition]:.3f}"
         for r, j in pairs
     )
     return (
-        f"{data}: with 32 hidden nodes for 6 inputs both networks nearly copy what they are given, spikes and all. At "
-        f"{PLAIN:g} sigma the extreme-learning one leads by {main[ELM] - main[BACKPROP]:+.3f} since it copies worse "
-        "what lies beyond its training, not since it knows the drive better: what cannot copy (principal components, 3 "
-        "hidden nodes, C = 0.01) and what looks back is compared here. Share of such a spike that is left, share of a "
-        f"channel's sigma left of healthy rows, AUC: {result}.",
+        f"{data}: with 32 hidden nodes for 6 inputs both networks nearly copy their inputs, including spikes. At "
+        f"{PLAIN:g} sigma the extreme learning machine is better by {main[ELM] - main[BACKPROP]:+.3f} because it "
+        "copies values outside the training range less well, not because it models the drive better. Models that "
+        "cannot copy (principal components, 3 hidden nodes, C = 0.01) and models that use earlier rows are compared "
+        "here. Share of such a spike left in the residual, healthy residual as share of a channel's sigma, AUC: "
+        f"{by_method}.",
     )

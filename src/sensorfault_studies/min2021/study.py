@@ -1,4 +1,4 @@
-"""The experiments of min2021, one after the other."""
+"""Min et al. 2021: all experiments, one after the other."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,18 +19,20 @@ def study(effort: Effort) -> Findings:
     """All of A1 to A4.
 
     Raises:
-        LogError: some of the real logs are not there; said before any work is done.
+        LogError: some of the real logs do not exist; raised before any work is done.
     """
     for folder in DATA:
         real(folder)
     findings = Findings(())
     for i, (code, experiment) in enumerate(EXPERIMENTS.items()):
-        findings += _filed(code, experiment(replace(effort, tell=_part(effort.tell, code, i, len(EXPERIMENTS)))))
+        findings += _filed(
+            code, experiment(replace(effort, progress=_part(effort.progress, code, i, len(EXPERIMENTS))))
+        )
     return findings
 
 
 def _filed(code: str, findings: Findings) -> Findings:
-    """The names of an experiment's figures begin with its code, which puts them below its tables; its remarks too."""
+    """Put the experiment's code before its remarks and its figures' names, which places figures below the tables."""
     figures = (
         figure if figure.name.startswith(code.lower()) else replace(figure, name=f"{code.lower()}-{figure.name}")
         for figure in findings.figures
@@ -39,25 +41,25 @@ def _filed(code: str, findings: Findings) -> Findings:
     return replace(findings, figures=tuple(figures), remarks=tuple(remarks))
 
 
-def _part(tell: Callable[[str, float], None], code: str, i: int, count: int) -> Callable[[str, float], None]:
-    """An experiment's own progress as a part of the study's."""
+def _part(progress: Callable[[str, float], None], code: str, i: int, count: int) -> Callable[[str, float], None]:
+    """The progress of an experiment as a part of the study's progress."""
 
     def part(doing: str, share: float) -> None:
-        said = doing if doing.startswith(code) else f"{code} {doing}"
-        tell(said, (i + min(max(share, 0.0), 1.0)) / count)
+        step = doing if doing.startswith(code) else f"{code} {doing}"
+        progress(step, (i + min(max(share, 0.0), 1.0)) / count)
 
     return part
 
 
 STUDY = Study(
     "min2021",
-    "Shorts, jams and abnormal motion of a car",
+    "Spikes, frozen positions and abnormal motion of a car",
     "Min et al. 2021",
     study,
     {
-        "A1": "Shorts of gyro and accelerometer",
-        "A2": "Jams of the position",
+        "A1": "Spikes of gyro and accelerometer",
+        "A2": "Frozen positions",
         "A3": "Abnormal motion: is the residual normal?",
-        "A4": "Bias and miss",
+        "A4": "Offset and missing",
     },
 )

@@ -1,1 +1,1 @@
-"""Wang S. et al.: the height of a flapping-wing aircraft, watched by an observer that looks several steps ahead."""
+"""Wang S. et al.: the height of a flapping-wing aircraft, monitored by an observer over several steps."""

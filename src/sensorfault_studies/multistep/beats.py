@@ -1,4 +1,4 @@
-"""A flight from beat to beat: what is left of it for a test of a slow drift, and the ramps laid on that."""
+"""A flight averaged to beats: the signal that a test of a slow drift gets, and the injected ramps."""
 
 from dataclasses import dataclass, replace
 
@@ -18,7 +18,7 @@ from sensorfault.vehicles.fixed_wing import roles
 
 @dataclass(frozen=True)
 class Beats:
-    """A flight from beat to beat: a log of the height minus the barometer, lag taken out, and nought to compare it to.
+    """A flight averaged to beats: a log of height minus barometer, corrected for lag, and zeros to compare it with.
 
     `half`: when the second half begins [s]. `when`: the mean time of the fixes of each beat [s].
     """
@@ -30,7 +30,7 @@ class Beats:
 
     @classmethod
     def of(cls, name: str, whole: Log, setting: Setting) -> "Beats":
-        """The lag is learned from the first half."""
+        """The lag is fitted on the first half."""
         half = float(whole.time[0]) + whole.duration_s / 2
         part = drifting.difference(name, whole.between(end_s=half), setting)
         beat = extra_tape(part, whole)
@@ -49,13 +49,13 @@ class Beats:
         return cls(log, beat.time[rows], half, plain)
 
     def with_ramp(self, rate: float, onset_s: float) -> Log:
-        """With this ramp on the height."""
+        """The log with this ramp on the height."""
         ramp = rate * np.maximum(self.when - onset_s, 0.0)
         return replace(self.log, value=self.log.value + np.column_stack([ramp, 0 * ramp]))
 
 
 def compared(whole: Log) -> Log:
-    """A flight with its two heights alone, on ticks on which one of them comes."""
+    """A flight with only its two heights, and only ticks with a new value of one of them."""
     columns = roles(whole)
     pair = whole.select(whole.channels[c].path for c in (columns.height, columns.barometric) if c is not None)
     return pair.without(np.flatnonzero(~pair.fresh.any(axis=1)))

@@ -1,4 +1,4 @@
-"""Who is compared: observers of one flight, one for each number of steps and seed, watched all at once."""
+"""The compared observers of one flight, one for each number of steps and seed, all run at once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -35,12 +35,12 @@ from sensorfault.vehicles.height import Climb, StepNetwork
 from sensorfault_studies.multistep.flown import Flown
 
 NETWORK, KINEMATIC = multistep_observer.NAME, kinematic_observer.NAME
-HORIZON_S = 10.0  # for which what was rolled out stands in, in closed loop
+HORIZON_S = 10.0  # in closed loop the roll-out is a stand-in for at most this long [s]
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What K monitors say of N cells: alarms, scores (NaN where there was nothing to test) and limits."""
+    """Output of K monitors for N cells: alarms, scores (NaN where nothing was tested) and limits."""
 
     alarm: Bool[np.ndarray, "K N T"]
     score: Float[np.ndarray, "K N T"]
@@ -49,9 +49,9 @@ class Seen:
 
 @dataclass(frozen=True)
 class Contender:
-    """K observers of one kind: `steps[k]` of each, of `seeds` seeds one after the other. `variant` names the kind.
+    """K observers of one kind with `steps[k]` steps, seed by seed. `variant`: name of the kind.
 
-    `typical`: root mean square of each one's healthy residual on the part that was learned from [m].
+    `typical`: RMS of each healthy residual on the training part [m].
     """
 
     method: str
@@ -65,13 +65,13 @@ class Contender:
     trained: Trained | None = None
 
     def of(self, steps: int) -> list[int]:
-        """Those with so many steps, one a seed."""
+        """Indices of the observers with so many steps, one for each seed."""
         return [k for k, n in enumerate(self.steps) if n == steps]
 
     def monitors(self, factor: Float[np.ndarray, " K"], closed: bool = False) -> Monitor:
-        """All of them in one, on a leading axis, under the limits factor (T_EKF + E).
+        """All monitors as one, on a leading axis, with the limits factor (T_EKF + E).
 
-        `closed`: what alarms is kept out of the next roll-outs; else all is believed, as in the paper.
+        `closed`: heights with an alarm are not used in later roll-outs; else all are used, as in the paper.
         """
         made = [self._monitor(k, float(f), closed) for k, f in enumerate(factor)]
         stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *made)
@@ -94,20 +94,20 @@ class Contender:
         )
 
     def rms(self, part: Log) -> Float[np.ndarray, " K"]:
-        """Root mean square of each one's roll-outs on a healthy part of the flight [m]."""
+        """RMS error of each observer's roll-outs on a healthy part of the flight [m]."""
         return np.array(
             [_rms(o.model, part, n, max(self.steps)) for o, n in zip(self.observers, self.steps, strict=True)]
         )
 
 
 def _rms(model: Climb | StepNetwork, part: Log, steps: int, longest: int) -> float:
-    """Of so many steps; with the longest beside them, so that all are one compilation."""
-    result = errors(model, Fixes.of(part, 0, model.columns), (steps, longest))
-    return float(np.sqrt(np.mean(result[0] ** 2)))
+    """RMS error over `steps`; the longest is computed too, so that one compilation serves all."""
+    error = errors(model, Fixes.of(part, 0, model.columns), (steps, longest))
+    return float(np.sqrt(np.mean(error[0] ** 2)))
 
 
 def network(flown: Flown, steps: tuple[int, ...], seeds: int, separate: bool = False) -> Contender:
-    """The paper's network, told what the flight has of vertical speed, pitch, throttle and elevator."""
+    """The paper's network; inputs: vertical speed, pitch, throttle and elevator, as far as the flight has them."""
     found = flown.roles
     columns = tuple(c for c in (found.vertical, *found.inputs) if c is not None)
     fixes = Fixes.of(flown.learn, 0, columns)
@@ -118,7 +118,7 @@ def network(flown: Flown, steps: tuple[int, ...], seeds: int, separate: bool = F
 
 
 def kinematic(flown: Flown, steps: tuple[int, ...], source: str = "receiver") -> Contender:
-    """No network: the climb of the receiver, as printed, or of the barometer."""
+    """Without a network: climb rate of the receiver, as in the paper, or of the barometer."""
     climb = kinematic_observer.climbing(Heights.of(KINEMATIC, flown.log), source)
     fixes = Fixes.of(flown.learn, 0, climb.columns)
     words = "" if source == "receiver" else source
@@ -144,7 +144,7 @@ def _contender(
 
 
 def watch(monitors: Monitor, logs: Sequence[Log]) -> Seen:
-    """Each log, from a fresh start, through each of the monitors."""
+    """Run each log from the initial state through each monitor."""
     value = np.stack([log.value for log in logs])
     cells = [samples(logs[0].time, one, np.isfinite(one)) for one in value]
     rows: Sample = jax.tree.map(lambda *x: jnp.stack(x), *cells)
@@ -155,11 +155,11 @@ def watch(monitors: Monitor, logs: Sequence[Log]) -> Seen:
 def _watch(monitors: Monitor, rows: Sample) -> tuple[Array, Array, Array]:
     def kept(report: Report) -> tuple[Array, Array, Array]:
         (score,), (limit,) = report.scores, report.limits
-        result = jnp.where(score.valid[0], score.value[0], jnp.nan)
-        return report.verdict.channel[0] == FAULT, result, limit[0]
+        value = jnp.where(score.valid[0], score.value[0], jnp.nan)
+        return report.verdict.channel[0] == FAULT, value, limit[0]
 
     def one(monitor: Monitor, cell: Sample) -> tuple[Array, Array, Array]:
         return replay(monitor, monitor.init(), cell, kept)[1]
 
-    result: tuple[Array, Array, Array] = jax.vmap(jax.vmap(one, (None, 0)), (0, None))(monitors, rows)
-    return result
+    seen: tuple[Array, Array, Array] = jax.vmap(jax.vmap(one, (None, 0)), (0, None))(monitors, rows)
+    return seen

@@ -1,4 +1,4 @@
-"""Figures 6, 7 and 8 of the paper: how the network learns, what a slow ramp does, and the number of steps."""
+"""Figures 6, 7 and 8 of the paper: training loss, a slow ramp, and the number of steps."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ SLOW = 0.1  # the ramp of figure 7 [m/s]
 
 
 def of_drift(result: Drift) -> tuple[Figure, ...]:
-    """Of one flight."""
+    """The figures of one flight."""
     shown = [_sweep(result.data, *key, result.surfaces[key]) for key in SHOWN if key in result.surfaces]
     return (*_training(result), *(_residual(result, n) for n in (1, 10)), *shown)
 
@@ -35,8 +35,8 @@ def _training(result: Drift) -> tuple[Figure, ...]:
         "yaxis": {"title": {"text": "loss [squared spreads of an increment]"}, "type": "log"},
     }
     caption = (
-        "The paper's figure 6: each training ends when ten epochs have brought no lower loss; the paper's own ended "
-        "after 294."
+        "The paper's figure 6: each training ends after ten epochs without a lower loss; the paper's training ended "
+        "after 294 epochs."
     )
     figure = Figure(
         f"d_training_{result.data}", f"Training loss, {result.data}", caption, {"data": data, "layout": layout}
@@ -45,7 +45,7 @@ def _training(result: Drift) -> tuple[Figure, ...]:
 
 
 def _residual(result: Drift, steps: int) -> Figure:
-    """The paper's figure 7: the slowest ramp at its first onset, under the threshold as printed."""
+    """The paper's figure 7: the slowest ramp at its first onset, with the threshold of the paper."""
     (contender,) = [c for c in result.contenders if c.trained and not c.variant]
     assert result.printed is not None
     assert result.ramps is not None
@@ -58,15 +58,15 @@ def _residual(result: Drift, steps: int) -> Figure:
     ]
     mark: Json = {"type": "line", "x0": onset, "x1": onset, "yref": "paper", "y0": 0, "y1": 1, "line": {"dash": "dash"}}
     layout: Json = {
-        "xaxis": {"title": {"text": "step of the part judged"}},
+        "xaxis": {"title": {"text": "step of the test part"}},
         "yaxis": {"title": {"text": "[m]"}},
         "shapes": [mark],
     }
     late = result.printed.alarm[k, cell, onset:]
     found = f"{int(np.argmax(late))} steps later" if late.any() else "never"
     caption = (
-        f"The paper's figure 7 with a = b = 1: a ramp of {SLOW} m/s begins at the dashed line, and the first alarm "
-        f"comes {found}. Thin: the same flight without the ramp. The paper's begins at step 500; its alarms come at "
+        f"The paper's figure 7 with a = b = 1: a ramp of {SLOW} m/s begins at the dashed line; the first alarm "
+        f"comes {found}. Thin: the same flight without the ramp. The paper's ramp begins at step 500, with alarms at "
         "883 with N = 1 and at 580 with N = 10."
     )
     title = f"Residual and threshold, N = {steps}, {result.data}"
@@ -74,7 +74,7 @@ def _residual(result: Drift, steps: int) -> Figure:
 
 
 def _sweep(data: str, method: str, condition: str, surface: Surface) -> Figure:
-    """The paper's figure 8 and table 2: first alarm and flagged share against the number of steps, a line a slope."""
+    """The paper's figure 8 and table 2: first alarm and share of alarms over the number of steps, by slope."""
     lines: list[Json] = []
     for axis, value in (("", surface.rate), ("2", surface.delay)):
         for i, slope in enumerate(surface.slopes):
@@ -93,14 +93,14 @@ def _sweep(data: str, method: str, condition: str, surface: Surface) -> Figure:
             lines.append(line)
     layout: Json = {
         "xaxis": {"title": {"text": "steps N"}, "anchor": "y2"},
-        "yaxis": {"title": {"text": "share flagged"}, "domain": [0.55, 1.0], "range": [0, 1.02]},
+        "yaxis": {"title": {"text": "share of steps with alarm"}, "domain": [0.55, 1.0], "range": [0, 1.02]},
         "yaxis2": {"title": {"text": "steps to the alarm"}, "domain": [0.0, 0.45]},
         "height": 560,
     }
-    words = "under the threshold as printed" if condition == PRINTED else "with limits that 1 % of healthy steps pass"
+    words = "with the paper's threshold" if condition == PRINTED else "with limits that 1 % of healthy steps exceed"
     caption = (
-        f"The paper's figure 8 and table 2, {words}: share of the faulty steps that are flagged, and steps from the "
-        "onset to the first alarm (all of the ramp's where there is none). What no ramp gives stands in the table."
+        f"The paper's figure 8 and table 2, {words}: share of the faulty steps with an alarm, and steps from the onset "
+        "to the first alarm (the whole ramp if there is none). The table has the numbers without a ramp."
     )
     title = f"{method}, {condition}, {data}"
     return Figure(f"d_sweep_{method}_{condition}_{data}", title, caption, {"data": lines, "layout": layout})

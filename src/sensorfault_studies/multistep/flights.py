@@ -1,4 +1,4 @@
-"""The two real flights of the study, with the same names: a PX4 fixed wing (proto) and an UltraStick (thor)."""
+"""The two real flights of the study, with equal channel names: a PX4 fixed wing (proto) and an UltraStick (thor)."""
 
 from sensorfault.logs.read import read
 from sensorfault.logs.table import Log
@@ -6,7 +6,7 @@ from sensorfault.logs.vehicle import VehicleFile
 from sensorfault_studies.data import real
 
 FLIGHTS = ("proto", "thor")
-_GROUND_M = 100.0  # both fields lie above 200 m: before its first fix thor's receiver shows 0
+_GROUND_M = 100.0  # both airfields are above 200 m; before its first fix thor's receiver reports 0
 
 _PROTO = """
 [vehicle]
@@ -109,7 +109,7 @@ def flight(name: str) -> Log:
     """`proto` (530 s, fixes at 4.9 Hz on a clock of 89 Hz) or `thor` (674 s, fixes at 1 Hz on a clock of 50 Hz).
 
     Raises:
-        LogError: the real data are not there.
+        LogError: the real data do not exist.
     """
     if name == "proto":
         return read(real("uav/px4_fw_proto_flt09"), VehicleFile.parse(_PROTO))

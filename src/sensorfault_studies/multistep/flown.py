@@ -1,4 +1,4 @@
-"""A flight from fix to fix, cut into a part to learn from and one to judge, and the ramps laid on its height."""
+"""A flight from fix to fix, split into a training part and a test part, and the ramps injected into its height."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -10,17 +10,17 @@ from sensorfault.logs.table import Log, Sensor
 from sensorfault.training.fixes import Fixes
 from sensorfault.vehicles.fixed_wing import Roles, roles
 
-LEARN = 0.7  # of the flight
+LEARN = 0.7  # share of the flight for training
 SLOPES = tuple(round(0.1 * i, 1) for i in range(1, 11))  # [m/s]
-EVERY_S, FAULTY_S = 30.0, 80.0  # from one onset to the next, and of a fault, or to the end: 150 and 400 steps at 5 Hz
-LEAST_S = 10.0  # that a fault must last
+EVERY_S, FAULTY_S = 30.0, 80.0  # between onsets, and length of a fault (or to the end): 150 and 400 steps at 5 Hz
+LEAST_S = 10.0  # shortest fault [s]
 
 
 @dataclass(frozen=True)
 class Flown:
-    """All rows are new heights; what else the observers use stands as last measured.
+    """A flight in which every row is a new height; the other inputs keep their last measured value.
 
-    `start`: the first row that is judged.
+    `start`: the first row of the test part.
     """
 
     log: Log
@@ -28,7 +28,7 @@ class Flown:
 
     @classmethod
     def of(cls, flight: Log) -> "Flown":
-        """Out of a whole flight on a faster clock.
+        """From a whole flight on a faster clock.
 
         Raises:
             LogError: too few heights.
@@ -49,12 +49,12 @@ class Flown:
 
     @property
     def learn(self) -> Log:
-        """The part to learn from."""
+        """The training part."""
         return self.log.between(end_s=float(self.log.time[self.start]))
 
     @property
     def judge(self) -> Log:
-        """The part to judge."""
+        """The test part."""
         return self.log.between(float(self.log.time[self.start]))
 
 
@@ -73,7 +73,7 @@ class Ramps:
 
     @classmethod
     def on(cls, log: Log, slopes: tuple[float, ...] = SLOPES) -> "Ramps":
-        """From EVERY_S on, for as long as there is room."""
+        """Onsets every EVERY_S, as many as fit."""
         every, faulty, least = (round(span / log.sensors[0].period_s) for span in (EVERY_S, FAULTY_S, LEAST_S))
         onsets = np.arange(every, len(log) - least, every)
         cells = [(0.0, 0), *((slope, int(onset)) for slope in slopes for onset in onsets)]
@@ -83,20 +83,20 @@ class Ramps:
 
     @property
     def logs(self) -> list[Log]:
-        """One log a cell."""
+        """One log for each cell."""
         columns = [np.column_stack([height, self.log.value[:, 1:]]) for height in self.height]
         return [replace(self.log, value=value) for value in columns]
 
     def span(self, cell: int) -> slice:
-        """The faulty rows of a cell that count."""
+        """The rows of a cell that count as faulty."""
         return slice(int(self.onset[cell]), min(int(self.onset[cell]) + self.faulty, len(self.log)))
 
 
 class Count(NamedTuple):
-    """What the alarms of one monitor say of all ramps of one slope, or of the same spans without any.
+    """Alarms of one monitor for all ramps of one slope, or for the same spans without a ramp.
 
-    `rate`: share of faulty steps that are flagged; `delay`: steps to the first alarm, all of them where there is none;
-    `missed`: share of the ramps without one. Means over the ramps.
+    `rate`: share of faulty steps with an alarm; `delay`: steps to the first alarm, or the whole span if there is none;
+    `missed`: share of the ramps without an alarm. Means over the ramps.
     """
 
     rate: float
@@ -105,8 +105,8 @@ class Count(NamedTuple):
 
 
 def count(ramps: Ramps, alarm: Bool[np.ndarray, "N T"], cells: Int[np.ndarray, " n"], fault: bool = True) -> Count:
-    """Over these cells; with `fault` False, over their spans in the flight without a fault."""
-    result = [alarm[cell if fault else 0, ramps.span(int(cell))] for cell in cells]
-    first = [int(np.argmax(each)) if each.any() else len(each) for each in result]
-    rate, missed = np.mean([each.mean() for each in result]), np.mean([not each.any() for each in result])
+    """Count over these cells; with `fault` False, over the same spans of the flight without a fault."""
+    spans = [alarm[cell if fault else 0, ramps.span(int(cell))] for cell in cells]
+    first = [int(np.argmax(each)) if each.any() else len(each) for each in spans]
+    rate, missed = np.mean([each.mean() for each in spans]), np.mean([not each.any() for each in spans])
     return Count(float(rate), float(np.mean(first)), float(missed))

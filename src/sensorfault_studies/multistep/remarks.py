@@ -1,4 +1,4 @@
-"""What the numbers do not say by themselves."""
+"""Remarks on the numbers of experiment D."""
 
 from collections.abc import Sequence
 
@@ -28,13 +28,13 @@ def remarks(result: Sequence[Drift]) -> tuple[str, ...]:
 
 def _reading(result: Drift) -> str:
     return (
-        f"D: 70 % of the flight is learned from and sets all limits but those of {MATCHED}, the rest is judged. Ramps "
-        f"begin every {EVERY_S:g} s (150 steps at 5 Hz) and last {FAULTY_S:g} s or to the end of the flight; a step "
-        "that cannot be tested is not flagged, a ramp without an alarm counts with its whole length. chance: the "
-        "same spans without a ramp. Our readings: the network foretells increments, in proportion to the time "
-        "between two fixes; fusion puts all inputs side by side; all steps share their weights (separate-weights: as "
-        "the paper's figure 3); steps weigh N + 1 - j; a training ends by its own loss. The paper does not say how "
-        "its network was initialised, in which batches it learned, nor how its EKF was tuned."
+        f"D: 70 % of the flight is for training and sets all limits except those of {MATCHED}; the rest is the test "
+        f"part. Ramps begin every {EVERY_S:g} s (150 steps at 5 Hz) and last {FAULTY_S:g} s or to the end of the "
+        "flight. A step that cannot be tested has no alarm; a ramp without an alarm counts with its whole length. "
+        "chance: the same spans without a ramp. Our interpretations: the network predicts increments, in proportion "
+        "to the time between two fixes; fusion concatenates all inputs; all steps share their weights "
+        "(separate-weights: as in the paper's figure 3); step j has weight N + 1 - j; training stops by the training "
+        "loss. The paper does not give the initial weights and the batches of its network, nor the tuning of its EKF."
     )
 
 
@@ -44,11 +44,11 @@ def _printed(result: Drift) -> str:
     far = [result.real.mean(f"{PRINTED} N{n}", NETWORK, "far") for n in (FEW, MANY)]
     return (
         f"D, {result.data}, {PRINTED} (a = b = 1): from N = {FEW} to N = {MANY} the first alarm comes after "
-        f"{delay[0]:.0f} and {delay[1]:.0f} steps (the paper: 134 and 16), {rate[0]:.1%} and {rate[1]:.1%} of the "
-        f"faulty steps are flagged (33.4 % and 65.5 %). So do {far[0]:.1%} and {far[1]:.1%} of the steps of the "
-        f"healthy flight, and without any ramp the first alarm comes after {by_chance[0]:.0f} and {by_chance[1]:.0f} "
-        f"steps, with {chance[0]:.1%} and {chance[1]:.1%} flagged: the limit knows nothing of N, the residual grows "
-        "with it. The paper prints no rate of false alarms."
+        f"{delay[0]:.0f} and {delay[1]:.0f} steps (the paper: 134 and 16), and {rate[0]:.1%} and {rate[1]:.1%} of the "
+        f"faulty steps have an alarm (the paper: 33.4 % and 65.5 %). But so do {far[0]:.1%} and {far[1]:.1%} of the "
+        f"steps of the healthy flight, and without a ramp the first alarm comes after {by_chance[0]:.0f} and "
+        f"{by_chance[1]:.0f} steps, with alarms on {chance[0]:.1%} and {chance[1]:.1%}: the residual grows with N, but "
+        "the limit does not. The paper gives no false alarm rate."
     )
 
 
@@ -61,17 +61,16 @@ def _matched(result: Drift) -> str:
     steps = (FEW, MANY, LONGEST)
     far = [result.real.mean(f"{HARD} N{n}", KINEMATIC, "far") for n in steps]
     return (
-        f"D, {result.data}, at one rate of false alarms, N = {FEW}, {MANY} and, without a network, {LONGEST}: limits "
-        f"that 1 % of the steps learned from pass ({HARD}): kinematic {pair(KINEMATIC, HARD, steps)}, network "
+        f"D, {result.data}, at a common false alarm rate, N = {FEW}, {MANY} and, without a network, {LONGEST}. Limits "
+        f"that 1 % of the training steps exceed ({HARD}): kinematic {pair(KINEMATIC, HARD, steps)}, network "
         f"{pair(NETWORK, HARD, steps)}; over the whole flight ({WHOLE}) kinematic "
-        f"{pair(KINEMATIC, f'{HARD} {WHOLE}', steps)}. The part judged is calmer "
-        f"({', '.join(f'{x:.1%}' for x in far)} of its healthy steps pass the kinematic limits), so once more with "
-        f"limits that 1 % of its own healthy steps pass ({MATCHED}, for comparison only): kinematic "
-        f"{pair(KINEMATIC, MATCHED, steps)}, network {pair(NETWORK, MATCHED, steps)}. A longer roll-out finds more "
-        "where its inputs can be trusted; the network's own error grows nearly as fast as a ramp does: "
-        f"{_rms(result, NETWORK)} m root mean square at N = {FEW} and {MANY}, the receiver's vertical speed alone "
-        f"{_rms(result, KINEMATIC)} m. That speed and the height are of one receiver: a fault of both is seen by "
-        "neither."
+        f"{pair(KINEMATIC, f'{HARD} {WHOLE}', steps)}. The test part is calmer ({', '.join(f'{x:.1%}' for x in far)} "
+        "of its healthy steps exceed the kinematic limits), so also with limits that 1 % of its own healthy steps "
+        f"exceed ({MATCHED}, for comparison only): kinematic {pair(KINEMATIC, MATCHED, steps)}, network "
+        f"{pair(NETWORK, MATCHED, steps)}. A longer roll-out detects more if its inputs can be trusted. The network's "
+        f"own error grows nearly as fast as a ramp: {_rms(result, NETWORK)} m RMS at N = {FEW} and {MANY}; with the "
+        f"receiver's vertical speed alone it is {_rms(result, KINEMATIC)} m. That speed and the height come from one "
+        "receiver: neither observer detects a fault of both."
     )
 
 
@@ -82,11 +81,11 @@ def _closed(result: Drift) -> str:
     adaptive = f"{HARD} {ADAPTIVE}"
     closed = f"{adaptive} {CLOSED}"
     return (
-        f"D, {result.data}, {CLOSED}: a height that alarms starts no roll-out; what was rolled out stands in for up "
-        f"to {HORIZON_S:g} s. With N = {FEW} and {MANY} the kinematic observer then flags "
+        f"D, {result.data}, {CLOSED}: a height with an alarm starts no roll-out; the roll-out is its stand-in for at "
+        f"most {HORIZON_S:g} s. With N = {FEW} and {MANY} the kinematic observer then has an alarm on "
         f"{both('detection_rate', closed, KINEMATIC)} instead of {both('detection_rate', adaptive, KINEMATIC)} of the "
-        f"faulty steps, the network {both('detection_rate', closed, NETWORK)} instead of "
-        f"{both('detection_rate', adaptive, NETWORK)}; but a false alarm lasts as long too: "
+        f"faulty steps, the network on {both('detection_rate', closed, NETWORK)} instead of "
+        f"{both('detection_rate', adaptive, NETWORK)}. But false alarms last longer too: "
         f"{both('chance', closed, KINEMATIC)} and {both('chance', closed, NETWORK)} of the same steps without a ramp."
     )
 
@@ -100,12 +99,12 @@ def _other(result: Drift) -> str:
     learned = np.mean([network.typical[k] for k in network.of(MANY)])
     own, plain = (result.real.mean(f"N{MANY}", method, "rms") for method in (NETWORK, KINEMATIC))
     return (
-        f"D, {result.data}: fixes at 1 Hz, so N steps are N seconds; {network.flown.start} fixes to learn from and few "
-        f"ramps to judge. With N = {MANY} the network errs by {learned:.1f} m on the part it learned from and by "
-        f"{own:.1f} m on the part judged, the mean of the vertical speeds at both ends of a second by {plain:.1f} m: "
-        f"it has learned this flight, not how an aircraft climbs. Its limits do not hold ({HARD}: {far:.0%} of the "
-        f"healthy steps judged pass them), and at {MATCHED} it flags {rate:.1%}, by chance {chance:.1%}. Over the "
-        f"whole flight the kinematic observer flags {', '.join(f'{x:.0%}' for x in found)} with N = "
+        f"D, {result.data}: fixes at 1 Hz, so N steps are N seconds; {network.flown.start} fixes for training and few "
+        f"test ramps. With N = {MANY} the error of the network is {learned:.1f} m on the training part and {own:.1f} m "
+        f"on the test part; with the mean vertical speed of both ends of a second it is {plain:.1f} m. The network has "
+        f"learned this flight, not how an aircraft climbs. Its limits do not hold on the test part ({HARD}: {far:.0%} "
+        f"of the healthy steps exceed them); at {MATCHED} it detects {rate:.1%} of the steps, {chance:.1%} by chance. "
+        f"Over the whole flight the kinematic observer detects {', '.join(f'{x:.0%}' for x in found)} with N = "
         f"{', '.join(map(str, steps))}."
     )
 

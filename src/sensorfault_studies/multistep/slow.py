@@ -1,4 +1,4 @@
-"""Slow drift done right: ramps in the second half of a flight, limits from the first, an independent reference."""
+"""Slow drift: ramps in the second half of a flight, limits from the first half, and an independent reference."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -15,13 +15,13 @@ from sensorfault_studies.numbers import Numbers
 EXPERIMENT, DRIFT = "D-slow", "drift"
 WHERE = ("height", "height-and-vd")  # what drifts
 WINDOWS = (60.0, 90.0, 110.0, 130.0, 150.0, 180.0)  # of the sweep [s]
-SLOTS = 210  # for the longest of them: one compilation serves all
-SHORT, PLAIN = "W60", "no-lag"  # the prototype's window; both heights taken to show the same moment
+SLOTS = 210  # enough for the longest window, so one compilation serves all
+SHORT, PLAIN = "W60", "no-lag"  # a window of 60 s; no lag between the two heights
 
 
 @dataclass
 class Slow:
-    """Of one flight: numbers, and what the figures show. `windows`: tests with windows of other lengths, by method."""
+    """The results of one flight. `windows`: tests with windows of other lengths, by method."""
 
     data: str
     real: Numbers
@@ -38,10 +38,10 @@ class Slow:
 
 
 def slow(effort: Effort) -> list[Slow]:
-    """Both flights; for a look one, and the recipes alone.
+    """Both flights; with `quick` only one, and only the recipes.
 
     Raises:
-        LogError: the real data are not there.
+        LogError: the real data do not exist.
     """
     names = FLIGHTS[:1] if effort.quick else FLIGHTS
     return [_flight(name, (i / len(names), 1 / len(names)), effort) for i, name in enumerate(names)]
@@ -53,7 +53,7 @@ def _flight(name: str, share: tuple[float, float], effort: Effort) -> Slow:
     beats, plain = (Beats.of(name, whole, replace(drift_setting.DEFAULT, lagging=lagging)) for lagging in (True, False))
     tests = {method: test for method, test in TESTS.items() if method in METHODS or not effort.quick}
     for i, (method, test) in enumerate(tests.items()):
-        effort.tell(f"{name}: slow ramps, {method}", share[0] + share[1] * i / len(tests))
+        effort.progress(f"{name}: slow ramps, {method}", share[0] + share[1] * i / len(tests))
         swept = () if effort.quick or method not in SWEPT else WINDOWS
         own = replace(test.setting, slots=SLOTS)
         settings = [own, *(replace(own, window_s=w) for w in swept)]
@@ -67,7 +67,7 @@ def _flight(name: str, share: tuple[float, float], effort: Effort) -> Slow:
 
 
 def _add(found: Slow, method: str, variant: str, judged: Judged) -> None:
-    """The barometer knows nothing of the receiver's vertical speed, so it is no matter whether that drifts too."""
+    """No test uses the receiver's vertical speed, so it does not matter whether that drifts too."""
     found.result[method, variant] = result = judged.judge(HALF)
     own = f"{variant} {HALF}".strip()
     found.real.add(own, method, {"far": result.far, "false_events": result.false, "healthy_ratio": result.ratio})

@@ -1,4 +1,4 @@
-"""Figures of slow drifts: delays, one flight, and how long to look back."""
+"""Figures of slow drifts: delays, one flight, and the length of the window."""
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +12,7 @@ _SLOWEST = 0  # of RATES
 
 
 def figures(result: Slow) -> tuple[Figure, ...]:
-    """Of one flight."""
+    """The figures of one flight."""
     return (_delays(result), _flight(result), *_windows(result))
 
 
@@ -33,8 +33,8 @@ def _delays(result: Slow) -> Figure:
         "yaxis": {"title": {"text": "mean delay [s]"}, "type": "log"},
     }
     caption = (
-        "Ramps in the second half of the flight, limits from the first; how often each test is wrong without a ramp "
-        "stands in the table."
+        "Ramps in the second half of the flight, limits from the first half. The table has the false alarms of each "
+        "test without a ramp."
     )
     return Figure(
         f"d_slow_delay_{result.data}", f"Delay of slow ramps, {result.data}", caption, {"data": data, "layout": layout}
@@ -45,7 +45,7 @@ def _flight(result: Slow) -> Figure:
     one = result.result[slope.NAME, ""]
     data = [
         _line("with a ramp of 0.1 m/s", one.time, one.ramped),
-        _line("as flown", one.time, one.score),
+        _line("without a ramp", one.time, one.score),
         _line("limit", one.time, np.full(len(one.time), one.limit)) | {"line": {"dash": "dot"}},
     ]
     mark: Json = {
@@ -93,14 +93,14 @@ def _windows(result: Slow) -> tuple[Figure, ...]:
         "height": 520,
     }
     caption = (
-        "Longer windows find slower ramps until the first half of a flight shows too few of them: below, the largest "
-        "healthy score of the second half over that of the first, and false events above "
+        "Longer windows detect slower ramps, until the first half of a flight contains too few windows. Below: largest "
+        "healthy score of the second half divided by that of the first; there are false events above "
         f"{drift_setting.DEFAULT.margin:g}."
     )
     return (
         Figure(
             f"d_slow_window_{result.data}",
-            f"How long to look back, {result.data}",
+            f"Length of the window, {result.data}",
             caption,
             {"data": data, "layout": layout},
         ),

@@ -1,4 +1,4 @@
-"""One test of a slow drift on one flight: every rate from every onset, and what its scores say under a limit."""
+"""One test of a slow drift on one flight: scores for every rate and onset, and the detections with a limit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,19 +18,19 @@ from sensorfault_studies.multistep.beats import Beats
 from sensorfault_studies.multistep.contenders import watch
 
 RATES = (0.1, 0.3, 1.0)  # [m/s]
-EVERY_S, BEGIN_S, LEAST_S = 15.0, 5.0, 100.0  # from one onset to the next, after half of the flight, before its end
-HALF = "first-half"  # what a limit is learned from
+EVERY_S, BEGIN_S, LEAST_S = 15.0, 5.0, 100.0  # between onsets, after the middle of the flight, before its end
+HALF = "first-half"  # the limit comes from the first half
 MATCHED = "matched0"  # the largest healthy score of the second half: the lowest limit without a false alarm there
 
 
 @dataclass(frozen=True)
 class Result:
-    """Of one test under one limit: scores of the healthy flight; of each rate and onset the delay [s], to the end of
-    the flight where nothing was found.
+    """Results of one test with one limit: scores of the healthy flight, and the delay [s] for each rate and onset.
 
-    `chance_s`: the delay without a ramp. `false`: alarms in the second half of the healthy flight, an unbroken run of
-    them once; `far`: their share of the beats. `ratio`: largest healthy score of the second half over that of the
-    first. `ramped`: the score with the slowest ramp from the middle onset on, `onset_s`.
+    Without an alarm the delay is the time to the end of the flight. `chance_s`: the delay without a ramp. `false`:
+    alarm events in the second half of the healthy flight; `far`: share of the beats with an alarm there. `ratio`:
+    largest healthy score of the second half divided by that of the first. `ramped`: the score with the slowest ramp
+    from the middle onset `onset_s` on.
     """
 
     time: Float[np.ndarray, " T"]
@@ -48,7 +48,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Judged:
-    """Scores of one test without consequences: cell 0 without a ramp, then every rate from every onset."""
+    """Open-loop scores of one test: cell 0 without a ramp, then every rate from every onset."""
 
     beats: Beats
     score: Float[np.ndarray, "N T"]
@@ -56,7 +56,7 @@ class Judged:
     margin: float
 
     def judge(self, learned: str) -> Result:
-        """Under a limit of HALF or MATCHED. What an alarm changes comes after the first alarm."""
+        """Results with the limit of HALF or MATCHED. Closed loop differs only after the first alarm."""
         time, score = self.beats.log.time, self.score
         second = time >= self.beats.half
         first_max, second_max = float(np.nanmax(score[0, ~second])), float(np.nanmax(score[0, second]))
@@ -85,14 +85,14 @@ def judge(beats: Beats, test: DriftTest, settings: Sequence[Setting]) -> list[Ju
     log, end = beats.log, float(beats.log.time[-1])
     onsets = np.arange(beats.half + BEGIN_S, end - LEAST_S, EVERY_S)
     cells = [log, *(beats.with_ramp(rate, float(onset)) for rate in RATES for onset in onsets)]
-    uncalibrated = [_deaf(beats, test, setting) for setting in settings]
+    uncalibrated = [_uncalibrated(beats, test, setting) for setting in settings]
     stacked: Monitor = jax.tree.map(lambda *x: jnp.stack([jnp.asarray(one) for one in x]), *uncalibrated)
     score = watch(stacked, cells).score
     return [Judged(beats, each, onsets, s.margin) for each, s in zip(score, settings, strict=True)]
 
 
-def _deaf(beats: Beats, test: DriftTest, setting: Setting) -> Monitor:
-    """The monitor of a recipe, for a flight that has been brought to beats."""
+def _uncalibrated(beats: Beats, test: DriftTest, setting: Setting) -> Monitor:
+    """The monitor of a recipe for a flight averaged to beats, with its limits off."""
     part = replace(beats.fitted, memory_s=jnp.asarray(setting.memory_s))
     return drifting.monitor(beats.log, part, test.statistic(setting, 2), Fixed(jnp.full(2, jnp.inf)), setting)
 

@@ -1,4 +1,4 @@
-"""Tests for a slow drift that are compared: those that are recipes, and those that are parts only."""
+"""The compared tests for a slow drift: recipes, and statistics without a recipe."""
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -10,7 +10,7 @@ from sensorfault.stages.statistic.averaged_innovation import AveragedInnovation
 from sensorfault.stages.statistic.ewma import Ewma
 from sensorfault.stages.statistic.windowed_chi_square import WindowedChiSquare
 
-MEMORY_S = 120.0  # of the offset, for tests that want none
+MEMORY_S = 120.0  # time constant of the offset, for tests that need a difference around zero [s]
 _FOLLOWING = Setting(memory_s=MEMORY_S, window_s=60.0)
 
 
@@ -38,4 +38,4 @@ TESTS = {
         DriftTest("windowed-chi-square", _chi_square, _FOLLOWING),
     )
 }
-SWEPT = (slope.NAME, ramp_glr.NAME)  # whose windows are swept; judged without the lag too
+SWEPT = (slope.NAME, ramp_glr.NAME)  # tests with a sweep of windows; also run without the lag

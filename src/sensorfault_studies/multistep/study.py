@@ -1,4 +1,4 @@
-"""Paper D: ramps on a height, observed over 1 to 15 steps on two real flights; slow drift by the minute; who drifts."""
+"""Wang S. et al.: ramps on a height, observers over 1 to 15 steps on two real flights; slow drift; isolation."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -25,19 +25,21 @@ def study(effort: Effort) -> Findings:
     """All of D.
 
     Raises:
-        LogError: a flight is not there; said before any work is done.
+        LogError: a flight does not exist; raised before any work is done.
     """
     real("uav")
-    result = drifts(replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED * share)))
+    result = drifts(replace(effort, progress=lambda doing, share: effort.progress(doing, STEPPED * share)))
     rows = tuple(row for one in result for row in rows_of(one))
     figures = tuple(figure for one in result for figure in of_drift(one))
     over_steps = Findings(rows, figures, remarks(result))
-    by_the_minute = replace(effort, tell=lambda doing, share: effort.tell(doing, STEPPED + (1 - STEPPED) * share))
+    by_the_minute = replace(
+        effort, progress=lambda doing, share: effort.progress(doing, STEPPED + (1 - STEPPED) * share)
+    )
     return over_steps + slow_page.findings(by_the_minute) + who.findings(by_the_minute)
 
 
 def rows_of(result: Drift) -> Iterator[Row]:
-    """With the paper's numbers beside its own method under its own threshold."""
+    """Rows; the paper's numbers are added to those of its method with its threshold."""
     yield from result.real.rows()
     for row in result.injected.rows():
         own = row.method == NETWORK and row.condition.startswith(PRINTED)
@@ -47,12 +49,12 @@ def rows_of(result: Drift) -> Iterator[Row]:
 
 STUDY = Study(
     "multistep",
-    "Incipient drift of an aircraft's height, seen by an observer of many steps",
+    "Incipient drift of an aircraft's height, and a multi-step observer",
     "Wang S. et al.",
     study,
     {
-        "D": "Ramps, observed over N steps",
-        "D-slow": "Slow drift against a barometer, over a minute or more",
-        "D-who": "Who is accused when a height drifts",
+        "D": "Ramps, with an observer over N steps",
+        "D-slow": "Slow drift against a barometer, over one minute or more",
+        "D-who": "Which sensor is isolated when a height drifts",
     },
 )

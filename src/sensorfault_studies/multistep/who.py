@@ -1,4 +1,4 @@
-"""Who is accused when a height drifts: the receiver, its height alone, or the barometer."""
+"""Which sensor is isolated when the receiver, its height alone, or the barometer drifts."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -32,12 +32,12 @@ from sensorfault_studies.numbers import Numbers
 
 EXPERIMENT, GATE = "D-who", "companion-chi-square"
 RATES = (0.3, 1.0)  # [m/s]
-TOLD = ("detection_rate", "named", "wrong_exclusions", "chance")
-LASTS_S, EVERY_S, BEGIN_S, REST_S = 60.0, 15.0, 80.0, 70.0  # of a ramp; from onset to onset; before and after them
-ALPHA = 0.01  # of the gate, as the paper's
-TEXTBOOK, CALM = "textbook", "calm"  # its limits: by ALPHA, or so that healthy data of the first half never pass them
-SETTLED_S, MARGIN = 30.0, 1.1  # the filter's beginning, which is no flight; on the largest healthy score after it
-SENSOR = {"height": "gnss", "height-and-vd": "gnss", "barometer": "barometer"}  # what drifts, and who is at fault
+REPORTED = ("detection_rate", "named", "wrong_exclusions", "chance")
+LASTS_S, EVERY_S, BEGIN_S, REST_S = 60.0, 15.0, 80.0, 70.0  # length of a ramp; between onsets; before and after them
+ALPHA = 0.01  # false alarm rate of the gate, as in the paper
+TEXTBOOK, CALM = "textbook", "calm"  # its limits: by ALPHA, or above all healthy scores of the first half
+SETTLED_S, MARGIN = 30.0, 1.1  # start of the filter, which is ignored; factor on the largest healthy score after it
+SENSOR = {"height": "gnss", "height-and-vd": "gnss", "barometer": "barometer"}  # what drifts, and the faulty sensor
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Ramp:
     onset_s: float
 
     def on(self, log: Log) -> Log:
-        """The log with this ramp; nothing of it is left after LASTS_S."""
+        """The log with this ramp, which ends after LASTS_S."""
         paths = {"barometer": ("barometer.altitude",), "height": ("gnss.altitude",)}
         faults = []
         for path in paths.get(self.what, ("gnss.altitude", "gnss.down")):
@@ -64,14 +64,14 @@ def findings(effort: Effort) -> Findings:
     """All of D-who.
 
     Raises:
-        LogError: the real data are not there.
+        LogError: the real data do not exist.
     """
     result = [_flown(name, effort) for name in FLIGHTS]
     return Findings(tuple(row for one in result for row in one.rows()), (), _remarks(result))
 
 
 def _flown(name: str, effort: Effort) -> Numbers:
-    effort.tell(f"who is accused on {name}", 1.0)
+    effort.progress(f"isolation on {name}", 1.0)
     log = flight(name)
     half = float(log.time[0]) + log.duration_s / 2
     first, rest = log.between(end_s=half), log.between(half)
@@ -81,14 +81,14 @@ def _flown(name: str, effort: Effort) -> Numbers:
         healthy = replay_log(monitor, rest)
         for what, rate, onset in product(SENSOR, RATES, onsets):
             ramp = Ramp(what, rate, float(onset))
-            result = judged(replay_log(monitor, ramp.on(rest)), rest, ramp)
-            result |= {"chance": float(_during(healthy.sample, rest, ramp).any())}
-            numbers.add(f"{what} {variant}".strip(), method, result, "drift", rate)
+            measured = judged(replay_log(monitor, ramp.on(rest)), rest, ramp)
+            measured |= {"chance": float(_during(healthy.sample, rest, ramp).any())}
+            numbers.add(f"{what} {variant}".strip(), method, measured, "drift", rate)
     return numbers
 
 
 def _rivals(healthy: Log) -> dict[tuple[str, str], Monitor]:
-    """By method and variant, all fitted on this part of a flight."""
+    """The monitors by method and variant, all fitted on this part of a flight."""
     recipes = (height_agreement.RECIPE, kinematic_observer.RECIPE)
     textbook = gate(healthy)
     return {
@@ -99,7 +99,7 @@ def _rivals(healthy: Log) -> dict[tuple[str, str], Monitor]:
 
 
 def calmed(gated: Monitor, log: Log) -> Monitor:
-    """Under limits that nothing healthy passes once the filter has settled, by a margin."""
+    """The monitor with limits a margin above all healthy scores after the filter's start."""
     score = np.asarray(replay_log(uncalibrated(gated), log).scores[0])[log.time > log.time[0] + SETTLED_S]
     (branch,) = gated.branches
     limit = Fixed(jnp.asarray(MARGIN * np.nanmax(score, axis=0)))
@@ -107,7 +107,7 @@ def calmed(gated: Monitor, log: Log) -> Monitor:
 
 
 def gate(log: Log) -> Monitor:
-    """The companion filter; each innovation over the textbook's limit is accused, the largest first, and left out."""
+    """The companion filter; the sensor with the largest innovation above the textbook limit is named and excluded."""
     found = roles(log)
     assert found.height is not None
     outputs = tuple((c,) for c in (found.height, found.vertical, found.barometric) if c is not None)
@@ -126,7 +126,7 @@ def gate(log: Log) -> Monitor:
 
 
 def judged(result: Replayed, log: Log, ramp: Ramp) -> dict[str, float]:
-    """Of one ramp, while it lasts: whether something was wrong, after how long [s], and who was named."""
+    """Results during one ramp: whether a fault was detected, the delay [s], and which sensors were named."""
     wrong = _during(result.sample, log, ramp)
     times = log.time[(log.time >= ramp.onset_s) & (log.time < ramp.onset_s + LASTS_S)]
     named = {channel.sensor for c, channel in enumerate(log.channels) if _during(result.channel[:, c], log, ramp).any()}
@@ -146,30 +146,30 @@ def _during(verdict: np.ndarray | Array, log: Log, ramp: Ramp) -> Bool[np.ndarra
 def _remarks(result: Sequence[Numbers]) -> tuple[str, ...]:
     jump, drift = height_agreement.MARGIN * height_agreement.FINEST_M
     return (
-        f"D-who: ramps of {LASTS_S:g} s in the second half, an onset every {EVERY_S:g} s (the seeds of a row); named: "
-        "what drifts is accused meanwhile; wrong_exclusions: another one is; chance: something is wrong without a "
-        f"ramp. {GATE}: each innovation of the companion filter under the textbook's limit at {ALPHA:g}, or under "
-        f"limits that the first half never passes ({CALM}), the largest excluded. {kinematic_observer.NAME} knows the "
-        "receiver alone; the tests of D-slow accuse it whoever drifts. Where receiver and barometer are all there is, "
-        "nobody can tell a receiver whose height and speed drift together from a barometer that drifts: then the right "
-        "answer is that something is wrong, and nobody is named. The least limits of "
-        f"{height_agreement.NAME}, {jump:.3g} m for a jump and {drift:.3g} m for a drift, were set after seeing these "
-        "flights and two copters', which pass lower ones in health.",
-        *(sentence for one in result for sentence in _said(one)),
+        f"D-who: ramps of {LASTS_S:g} s in the second half, an onset every {EVERY_S:g} s (the seeds of a row). named: "
+        "the drifting sensor is named during the ramp. wrong_exclusions: another sensor is named. chance: a fault is "
+        f"reported without a ramp. {GATE}: each innovation of the companion filter against the textbook limit at "
+        f"{ALPHA:g}, or against limits above all scores of the first half ({CALM}); the largest is excluded. "
+        f"{kinematic_observer.NAME} uses the receiver alone; the tests of D-slow name it whichever sensor drifts. "
+        "With receiver and barometer alone, a receiver whose height and speed drift together cannot be distinguished "
+        "from a drifting barometer: the right answer is then 'unknown which'. The smallest limits of "
+        f"{height_agreement.NAME}, {jump:.3g} m for a jump and {drift:.3g} m for a drift, were chosen after these "
+        "flights and those of two copters, whose healthy data exceed lower limits.",
+        *(sentence for one in result for sentence in _sentences(one)),
     )
 
 
-def _said(one: Numbers) -> Iterator[str]:
-    """A sentence for each rate, method by method."""
+def _sentences(one: Numbers) -> Iterator[str]:
+    """One sentence for each rate, with all methods."""
     rivals = {key.method: key.condition.split()[1:] for key in one.values}
     variants = {method: (TEXTBOOK, CALM) if words else ("",) for method, words in rivals.items()}
     for rate in RATES:
-        said = []
+        numbers = []
         for method, variant in ((m, v) for m, vs in variants.items() for v in vs):
             parts = []
             for what in SENSOR:
                 words = f"{what} {variant}".strip()
-                share = [one.mean(words, method, metric, "drift", rate) for metric in TOLD]
+                share = [one.mean(words, method, metric, "drift", rate) for metric in REPORTED]
                 parts.append(f"{what} {' / '.join(f'{x:.0%}' for x in share)}")
-            said.append(f"{method} {variant}".strip() + f": {', '.join(parts)}")
-        yield f"D-who, {one.data}, {rate:g} m/s, found / named / laid on another / chance: {'; '.join(said)}."
+            numbers.append(f"{method} {variant}".strip() + f": {', '.join(parts)}")
+        yield f"D-who, {one.data}, {rate:g} m/s, detected / named / another named / chance: {'; '.join(numbers)}."

@@ -1,1 +1,1 @@
-"""Niu & Zhao 1998: sensors of a robot arm, watched by a network that learns while it watches."""
+"""Niu & Zhao 1998: sensors of a robot arm, monitored by a network that learns online."""

@@ -1,4 +1,4 @@
-"""Both drifts at once, under the thresholds of the paper and at one rate of false alarms; then slower ones, alone."""
+"""Two drifts at once, with the paper's thresholds and at a common false alarm rate; then slower single drifts."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -30,30 +30,30 @@ SETTINGS = {"as-printed": AS_PRINTED, "physical": PHYSICAL}
 ELSEWHERE = replace(AS_PRINTED, start=(11.0, -8.2, 0.8, 1.9))
 FROM_REST = replace(AS_PRINTED, start=(0.0, 0.0, 0.0, 0.0))
 AT_RATE = "far5e-2"
-FAST = 2.0  # thresholds a sample
+FAST = 2.0  # drift rate in thresholds a sample
 SLOWER = (2.0, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02)
 QUICK = (2.0, 0.5, 0.1)
-FOUND = 0.95  # share of runs in which a rate must be found to be called so
+FOUND = 0.95  # share of runs in which a drift rate must be detected to count as detectable
 PAPER = {"sample_y2": 51.0, "sample_y4": 51.0, "theta_y2": 0.024, "theta_y4": 0.0182}
 NAMES = ("y2", "y4")
 
 
 @dataclass
 class Drifts:
-    """Numbers of all rivals, and what the first network of the first seed said of the paper's run."""
+    """Numbers of all methods, and the output of the first network of the first seed for the paper's run."""
 
     numbers: Numbers = field(default_factory=lambda: Numbers("B", "arm", "simulated"))
     shown: dict[str, tuple[Result, Float[np.ndarray, "N T C"]]] = field(default_factory=dict)
 
     def rows(self) -> Iterator[Row]:
-        """With the paper's samples and thresholds beside those that are as printed."""
+        """Rows; the paper's samples and thresholds are added to those for its printed setting."""
         for row in self.numbers.rows():
             paper = PAPER.get(row.metric) if row.condition.split()[0] == "as-printed" and row.fault else None
             yield replace(row, paper=paper)
 
 
 def drifts(effort: Effort) -> Drifts:
-    """Every rival on both arms; the sweep and the start from rest as printed only."""
+    """Every method on both arms; the sweep and the start from rest only with the printed arm."""
     result = Drifts()
     seeds = 1 if effort.quick else effort.seeds
     done = 0
@@ -61,7 +61,9 @@ def drifts(effort: Effort) -> Drifts:
         rivals = of_two_links(setting.constants, _by_path(theta(setting)))
         for rival in rivals:
             for seed in range(seeds):
-                effort.tell(f"{rival.method} on the paper's arm, {name}", done / (len(SETTINGS) * len(rivals) * seeds))
+                effort.progress(
+                    f"{rival.method} on the paper's arm, {name}", done / (len(SETTINGS) * len(rivals) * seeds)
+                )
                 watched = Watched.of(rival, setting, seed)
                 limited = watched.at_rate()
                 _judge(result, name, rival, watched, limited)
@@ -79,7 +81,7 @@ def _by_path(limit: Float[np.ndarray, " C"]) -> Mapping[str, float]:
 
 
 def _judge(result: Drifts, name: str, rival: Rival, watched: Watched, limited: Model) -> None:
-    """Both drifts, each of two thresholds a sample, under the paper's thresholds and at one rate of false alarms."""
+    """Both drifts of two thresholds a sample, with the paper's thresholds and at the common false alarm rate."""
     limit = theta(watched.setting)
     printed = watched.model if rival.method == KALMAN else with_limits(watched.model, limit)
     fast = {sensor: FAST * float(limit[column]) for sensor, column in zip(SENSORS, COLUMNS, strict=True)}
@@ -98,7 +100,7 @@ def _judge(result: Drifts, name: str, rival: Rival, watched: Watched, limited: M
 
 
 def _errors(numbers: Numbers, condition: str, rival: Rival, watched: Watched) -> None:
-    """One-step errors of both joint rates and of y2 alone where nothing lies, with the sensors' noise and without."""
+    """One-step errors of both joint rates and of y2 alone in healthy runs, with and without the sensors' noise."""
     runs = {condition: watched.healthy(), f"{condition} noise-free": watched.healthy(0.0)}
     for words, logs in runs.items():
         seen = watch(watched.uncalibrated, logs)
@@ -107,7 +109,7 @@ def _errors(numbers: Numbers, condition: str, rival: Rival, watched: Watched) ->
 
 
 def _elsewhere(numbers: Numbers, name: str, rival: Rival, watched: Watched, limited: Model) -> None:
-    """The same arm, model and limits, and another motion: how many healthy runs raise an early alarm now."""
+    """The same arm, model and limits with another motion: share of healthy runs with an early alarm."""
     moved = replace(watched, setting=ELSEWHERE)
     condition = " ".join(part for part in (name, rival.variant, AT_RATE, "other-start") if part)
     numbers.add(condition, rival.method, {"far": early(watch(limited, moved.healthy())).mean()})
@@ -119,7 +121,7 @@ def _from_rest(numbers: Numbers, rival: Rival, seed: int) -> None:
 
 
 def _sweep(numbers: Numbers, name: str, rival: Rival, watched: Watched, model: Model, rates: tuple[float, ...]) -> None:
-    """One sensor drifts, slower and slower: found within so many samples, at one rate of false alarms."""
+    """One sensor drifts at lower and lower rates: detected within WITHIN samples, at the common false alarm rate."""
     limit = theta(watched.setting)
     for y, sensor, column in zip(NAMES, SENSORS, COLUMNS, strict=True):
         condition = " ".join(part for part in (name, rival.variant, AT_RATE, y) if part)
@@ -138,7 +140,7 @@ def _soon(model: Model, watched: Watched, rate: Mapping[str, float], column: int
 
 
 def smallest(numbers: Numbers, condition: str, method: str, rates: tuple[float, ...]) -> float:
-    """The smallest drift from which on all faster ones are found in FOUND of the runs; NaN if there is none."""
+    """The smallest drift such that it and all faster ones are detected in FOUND of the runs; NaN if there is none."""
     found = float("nan")
     for rate in sorted(rates, reverse=True):
         if not numbers.mean(condition, method, "detection_rate", "drift", rate) >= FOUND:

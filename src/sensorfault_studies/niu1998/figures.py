@@ -1,4 +1,4 @@
-"""Figures 3 to 6 of the paper, how slow a drift may be, and whom the network accuses on the real arm."""
+"""Figures 3 to 6 of the paper, detection of slow drifts, and isolation on the real arm."""
 
 from collections.abc import Sequence
 
@@ -15,11 +15,11 @@ from sensorfault_studies.niu1998.run import COLUMNS, ONSET, WITHIN
 PRINTED = "as-printed"
 UNITS = {"y2": "rad/s", "y4": "rad"}
 NUMBERS = {"y2": (3, 4), "y4": (5, 6)}  # of the paper's figures
-NETWORKS = {f"{PRINTED} {NETWORK}": "taught before", f"{PRINTED} {SCRATCH} {NETWORK}": "from scratch"}
+NETWORKS = {f"{PRINTED} {NETWORK}": "trained before", f"{PRINTED} {SCRATCH} {NETWORK}": "from scratch"}
 
 
 def of_the_run(result: Drifts) -> tuple[Figure, ...]:
-    """Of the first run: prediction and measurement, residual and threshold, of y2 and y4."""
+    """Prediction and measurement, residual and threshold of y2 and y4 in the first run."""
     return tuple(figure for i in range(2) for figure in (_prediction(result, i), _residual(result, i)))
 
 
@@ -30,13 +30,13 @@ def _prediction(result: Drifts, i: int) -> Figure:
     plot: Json = {"data": [_line("measured", value), *lines], "layout": _axes(f"{y} [{UNITS[y]}]")}
     caption = (
         f"The paper's figure {NUMBERS[y][0]}: from sample {ONSET} on the sensor drifts by two thresholds a sample; the "
-        "networks stop learning and go on by themselves."
+        "networks stop learning and continue on their own predictions."
     )
     return Figure(f"b_prediction_{y}", f"Prediction and measurement of {y}", caption, plot)
 
 
 def _expected(result: Result, column: int) -> Float[np.ndarray, " T"]:
-    """From the second sample on: at the first nothing is known."""
+    """From the second sample on; at the first nothing is known."""
     after = np.arange(result.expected.shape[1]) > 0
     return np.where(after, result.expected[0, :, column], np.nan)
 
@@ -49,7 +49,7 @@ def _residual(result: Drifts, i: int) -> Figure:
     threshold = _line("threshold", np.full(len(result.shown[next(iter(NETWORKS))][1][0]), limit)) | {
         "line": {"dash": "dot"}
     }
-    caption = f"The paper's figure {NUMBERS[y][1]}; nothing is shown where nothing could be tested."
+    caption = f"The paper's figure {NUMBERS[y][1]}; gaps are samples that could not be tested."
     plot: Json = {"data": [*lines, threshold], "layout": layout}
     return Figure(f"b_residual_{y}", f"Residual of {y} against its threshold", caption, plot)
 
@@ -65,7 +65,7 @@ def _axes(title: str) -> Json:
 
 
 def of_slow_drifts(rows: Sequence[Row]) -> tuple[Figure, ...]:
-    """Share found in time against the rate of the drift, a line a method."""
+    """Share of drifts detected in time over the rate of the drift, one line for each method."""
     return tuple(_slow(rows, y) for y in NAMES)
 
 
@@ -81,10 +81,10 @@ def _slow(rows: Sequence[Row], y: str) -> Figure:
         data.append({"type": "scatter", "mode": "lines+markers", "name": name, "x": x, "y": share})
     layout = {
         "xaxis": {"title": {"text": "drift [thresholds a sample]"}, "type": "log"},
-        "yaxis": {"title": {"text": f"found within {WITHIN} samples"}, "range": [0, 1.02]},
+        "yaxis": {"title": {"text": f"detected within {WITHIN} samples"}, "range": [0, 1.02]},
     }
-    caption = f"{y} drifts alone; every method raises an alarm before the onset in 5 % of healthy runs."
-    return Figure(f"b_slow_{y}", f"How slow a drift of {y} may be", caption, {"data": data, "layout": layout})
+    caption = f"Only {y} drifts; every method raises an alarm before the onset in 5 % of healthy runs."
+    return Figure(f"b_slow_{y}", f"Detection of slow drifts of {y}", caption, {"data": data, "layout": layout})
 
 
 def _size(row: Row) -> float:
@@ -92,18 +92,18 @@ def _size(row: Row) -> float:
 
 
 def of_isolation(accused: Int[np.ndarray, "12 13"]) -> Figure:
-    """Whom the first alarm accuses, for each faulty sensor."""
+    """The sensor isolated by the first alarm, for each faulty sensor."""
     share = accused / np.maximum(accused.sum(axis=1, keepdims=True), 1)
     names = [path.split(".")[0] for path in PATHS]
-    heat: Json = {"type": "heatmap", "x": [*names, "nobody"], "y": names, "z": share.round(3).tolist(), "zmin": 0,
+    heat: Json = {"type": "heatmap", "x": [*names, "none"], "y": names, "z": share.round(3).tolist(), "zmin": 0,
                   "zmax": 1, "colorscale": "Blues", "reversescale": True}  # fmt: skip
     layout = {
-        "xaxis": {"title": {"text": "accused"}},
-        "yaxis": {"title": {"text": "faulty"}, "autorange": "reversed"},
+        "xaxis": {"title": {"text": "isolated sensor"}},
+        "yaxis": {"title": {"text": "faulty sensor"}, "autorange": "reversed"},
         "height": 480,
     }
     caption = (
-        f"{NETWORK} on the Schunk arm: short, bias and jam of five one-step errors, limits for one healthy sample in a "
-        "hundred with anybody over his."
+        f"{NETWORK} on the Schunk arm: spike, offset and frozen of five one-step errors; limits that one healthy "
+        "sample in a hundred exceeds on any sensor."
     )
-    return Figure("b_isolation", "Who is accused on the real arm", caption, {"data": [heat], "layout": layout})
+    return Figure("b_isolation", "Isolation on the real arm", caption, {"data": [heat], "layout": layout})

@@ -1,4 +1,4 @@
-"""Many logs of one shape through one model at once."""
+"""Run many logs of one shape through one model at once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ BATCH = 128  # logs at once: one compilation for any number of them
 
 @dataclass(frozen=True)
 class Result:
-    """What a model says of N logs: verdicts, each sensor's own score and limit (NaN where it was not tested), residual
+    """Output of a model for N logs: verdicts, score and limit of each sensor (NaN where it was not tested), residual
     and expected value [SI].
     """
 
@@ -33,17 +33,17 @@ class Result:
 
     @property
     def fault(self) -> Bool[np.ndarray, "N T C"]:
-        """Who was accused when."""
+        """Which channels are FAULT at which sample."""
         return np.asarray(self.channel == FAULT)
 
     @property
     def tested(self) -> Bool[np.ndarray, "N T C"]:
-        """Who could be judged when."""
+        """Which channels could be tested at which sample."""
         return np.asarray(np.isfinite(self.score))
 
 
 def watch(model: Model, logs: Sequence[Log]) -> Result:
-    """Each log from a fresh start; all have the model's channels and one length."""
+    """Run each log from the initial state; all logs have the model's channels and the same length."""
     kept = []
     for start in range(0, len(logs), BATCH):
         some = [logs[min(i, len(logs) - 1)] for i in range(start, start + BATCH)]
@@ -72,20 +72,20 @@ def _watch(monitor: Monitor, rows: Sample) -> tuple[Array, ...]:
 
 
 def _columns(model: Model, tests: int) -> list[int]:
-    """The channel of each test of the first branch, which has one for a sensor."""
+    """The channel of each test of the first branch, which has one test for each sensor."""
     paths = [channel.path for channel in model.channels]
     return [paths.index(path) for _, path in model.tests[:tests] if path is not None]
 
 
 def with_limits(model: Model, limit: Float[np.ndarray, " C"]) -> Model:
-    """The model with these limits of its channels' own scores."""
+    """The model with these limits on the scores of its channels."""
     tests = jax.eval_shape(_limits, model.monitor).size
     own = Fixed(jnp.asarray(limit[_columns(model, tests)]))
     return replace(model, monitor=eqx.tree_at(lambda m: m.branches[0].threshold, model.monitor, own))
 
 
 def _limits(monitor: Monitor) -> Float[Array, " K"]:
-    """Of an empty sample."""
+    """The limits for an empty sample, for their shape."""
     channels = len(monitor.owner)
     none = jnp.zeros(channels, bool)
     sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none)

@@ -1,4 +1,4 @@
-"""A real arm: faults of all kinds on twelve sensors, one at a time, and who is accused first."""
+"""A real arm: faults of all kinds on twelve sensors, one at a time, and which sensor is isolated first."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,20 +14,20 @@ from sensorfault.runtime.model import Model
 from sensorfault_studies.niu1998.fleet import Result, watch, with_limits
 from sensorfault_studies.niu1998.schunk import JOINTS
 
-WINDOW, ONSET, LASTING = 150, 100, 25  # ticks: of a stretch of a run, until its fault begins, and for how long
-CALM = 10  # ticks before the onset in which nobody may be accused
+WINDOW, ONSET, LASTING = 150, 100, 25  # ticks: length of a stretch of a run, onset and duration of its fault
+CALM = 10  # ticks before the onset without an alarm
 RATES = {"far1e-2": 1e-2, "far1e-3": 1e-3}  # share of healthy samples with any of the twelve over its limit
 SENSORS = 2 * JOINTS
-FIFTH = 5  # of the runs, the last, are another motion
+FIFTH = 5  # the last fifth of the runs has another motion
 GROUPS = {"tachometers": slice(0, JOINTS), "encoders": slice(JOINTS, SENSORS), "all": slice(0, SENSORS)}
 SIZES = (3.0, 5.0, 10.0, 20.0)
-OFFSETS = ("spike", "offset", "drift", "noise")  # whose size is counted in one-step errors (of a drift, a sample)
+OFFSETS = ("spike", "offset", "drift", "noise")  # sizes in one-step errors (of a drift: a sample)
 OTHERS = {"frozen": LASTING, "scale": 1.5, "delay": 5, "missing": LASTING}  # ticks; a factor; ticks; ticks
 
 
 @dataclass(frozen=True)
 class Runs:
-    """Which runs are for what: a network is taught on `learned`, limits come from `other`, `judged` are new to both."""
+    """The use of the runs: `learned` for training, `other` for the limits, `judged` for the tests."""
 
     learned: tuple[Log, ...]
     other: tuple[Log, ...]
@@ -35,13 +35,13 @@ class Runs:
 
     @classmethod
     def of(cls, runs: Sequence[Log], seed: int) -> "Runs":
-        """A half, a quarter and a quarter, each of all motions; those to be learned in an order by chance."""
+        """A half, a quarter and a quarter, each with all motions; the training runs in random order."""
         order = np.random.default_rng(seed).permutation(len(runs[::2]))
         return cls(tuple(runs[2 * i] for i in order), tuple(runs[1::4]), tuple(runs[3::4]))
 
     @classmethod
     def of_another_motion(cls, runs: Sequence[Log]) -> "Runs":
-        """Judged are the last fifth of the runs, which do what none of the others does."""
+        """The last fifth of the runs for the tests; its motion occurs in no other run."""
         known = runs[: -len(runs) // FIFTH]
         order = np.random.default_rng(0).permutation(len(known[::2]))
         return cls(tuple(known[2 * i] for i in order), tuple(known[1::2]), tuple(runs[len(known) :]))
@@ -58,7 +58,7 @@ class Trial:
 
 
 def stretches(runs: Sequence[Log]) -> list[Log]:
-    """Of WINDOW ticks, side by side; the last tick of a run is left out, since it has no torque."""
+    """Consecutive stretches of WINDOW ticks; the last tick of a run is left out, since it has no torque."""
     return [
         replace(run, time=run.time[rows], value=run.value[rows], fresh=run.fresh[rows])
         for run in runs
@@ -67,9 +67,9 @@ def stretches(runs: Sequence[Log]) -> list[Log]:
 
 
 def trials(healthy: Sequence[Log], unit: Float[np.ndarray, " C"], each: int, seed: int, quick: bool) -> list[Trial]:
-    """`each` of every kind and size on every sensor, in stretches by chance; `unit`: one-step error of a channel [SI].
+    """`each` of every kind and size on every sensor, in random stretches; `unit`: one-step error of a channel [SI].
 
-    A jam strikes where the next measurement would have been at least five units away.
+    A frozen fault starts where the next measurement would have been at least five units away.
     """
     rng = np.random.default_rng(seed)
     sizes = (5.0,) if quick else SIZES
@@ -84,7 +84,7 @@ def trials(healthy: Sequence[Log], unit: Float[np.ndarray, " C"], each: int, see
 
 
 def _drawn(healthy: Sequence[Log], column: int, least: float, many: int, rng: np.random.Generator) -> Iterator[Log]:
-    """Stretches in which this channel moves by at least so much from the sample before the onset to that at it."""
+    """Stretches in which this channel changes by at least `least` from the sample before the onset to the onset."""
     for i in rng.permutation(len(healthy)):
         before, at = healthy[i].value[ONSET - 1 : ONSET + 1, column]
         if many and abs(at - before) >= least:
@@ -109,9 +109,9 @@ def _fault(kind: str, size: float, log: Log, column: int, unit: float, rng: np.r
 
 @dataclass(frozen=True)
 class Isolated:
-    """What became of N trials: who was accused, if all was calm before, and when (ticks after the onset, NaN: never).
+    """Results of N trials. `calm`: no alarm before. `named`: sensors of the first alarm. `delay`: ticks, NaN: none.
 
-    `right`: at the first alarm the faulty sensor is accused and no other.
+    `right`: the first alarm names the faulty sensor and no other.
     """
 
     calm: Bool[np.ndarray, " N"]
@@ -121,7 +121,7 @@ class Isolated:
 
 
 def isolated(result: Result, column: Int[np.ndarray, " N"]) -> Isolated:
-    """By the first alarm while the fault lasts."""
+    """Results by the first alarm during the fault."""
     fault = result.fault[:, :, :SENSORS]
     calm = ~np.asarray(fault[:, ONSET - CALM : ONSET].any(axis=(1, 2)))
     during = fault[:, ONSET : ONSET + LASTING]
@@ -134,22 +134,24 @@ def isolated(result: Result, column: Int[np.ndarray, " N"]) -> Isolated:
 
 
 def missed(result: Result, column: Int[np.ndarray, " N"]) -> Bool[np.ndarray, " N"]:
-    """Trials in which a silent sensor was unknown all the while, and no other accused."""
+    """Trials in which a missing sensor was unknown throughout, and no sensor was named."""
     during = result.channel[:, ONSET : ONSET + LASTING, :SENSORS]
     unknown = np.asarray(during[np.arange(len(during)), :, column] == UNKNOWN)
     return np.asarray(unknown.all(axis=1) & ~result.fault[:, ONSET : ONSET + LASTING].any(axis=(1, 2)))
 
 
 def one_step_error(result: Result) -> Float[np.ndarray, "12"]:
-    """Root mean square of each sensor's residual where it was tested [SI]."""
+    """RMS of each sensor's residual where it was tested [SI]."""
     residual = np.where(result.tested, result.residual, np.nan)[:, :, :SENSORS]
     return np.asarray(np.sqrt(np.nanmean(residual**2, axis=(0, 1))))
 
 
 @dataclass(frozen=True)
 class Calibrated:
-    """A model on healthy stretches that it does not know: `unit`, each channel's one-step error (root mean square)
-    [SI], and limits by the names of RATES, all twelve sensors alike.
+    """A model with limits from healthy stretches that it was not trained on.
+
+    `unit`: RMS one-step error of each channel [SI]. `limits`: by the names of RATES, equal rates for all twelve
+    sensors.
     """
 
     uncalibrated: Model
@@ -158,7 +160,7 @@ class Calibrated:
 
     @classmethod
     def of(cls, model: Model, healthy: Sequence[Log]) -> "Calibrated":
-        """From scores without consequences."""
+        """From open-loop scores."""
         many = len(model.channels)
         uncalibrated = with_limits(model, np.full(many, np.inf))
         result = watch(uncalibrated, healthy)

@@ -1,4 +1,4 @@
-"""The experiment on the real arm: what each method finds and lays at the right door, at one rate of false alarms."""
+"""The experiment on the real arm: detection and isolation of each method at a common false alarm rate."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -32,8 +32,8 @@ from sensorfault_studies.numbers import Numbers
 DATA = "schunk"
 EACH, QUICK_EACH = 8, 3  # faults of every kind and size on every sensor, for each seed
 PATHS = tuple(channel.path for channel in channels(JOINTS)[:SENSORS])
-APART = PATHS[:JOINTS], PATHS[JOINTS:]  # rates are foretold without angles, angles without rates: no twin tells
-SINGLE = ("spike", "offset", "frozen")  # the faults by which isolation is judged
+APART = PATHS[:JOINTS], PATHS[JOINTS:]  # rates are predicted without angles, and angles without rates
+SINGLE = ("spike", "offset", "frozen")  # the kinds for which isolation is measured
 NEW = "new-motion"
 TIMED = ("frozen", "delay", "missing")
 SHOWN, ALL = "far1e-2", "all"
@@ -41,7 +41,7 @@ SHOWN, ALL = "far1e-2", "all"
 
 @dataclass
 class Joints:
-    """Numbers of all rivals; whom the network accused, at five times its one-step errors, for each faulty sensor."""
+    """Numbers of all methods; sensors isolated by the network, for faults of five one-step errors on each sensor."""
 
     injected: Numbers = field(default_factory=lambda: Numbers("B", DATA, "injected"))
     real: Numbers = field(default_factory=lambda: Numbers("B", DATA, "real"))
@@ -49,17 +49,17 @@ class Joints:
 
 
 def joints(effort: Effort) -> Joints:
-    """All rivals on the same faults; at last on a motion that none of them knows.
+    """All methods on the same faults; then on a motion that none of them was trained on.
 
     Raises:
-        LogError: the runs are not there.
+        LogError: the runs do not exist.
     """
     result = Joints()
     logs = runs(real("arm") / ARCHIVE)
     splits = [("", Runs.of(logs, seed)) for seed in range(1 if effort.quick else effort.seeds)]
     splits.append((NEW, Runs.of_another_motion(logs)))
     for seed, (words, parts) in enumerate(splits):
-        effort.tell(f"the real arm {words}".strip(), seed / len(splits))
+        effort.progress(f"the real arm {words}".strip(), seed / len(splits))
         _judge(result, words, parts, seed, effort.quick)
     return result
 
@@ -80,7 +80,7 @@ def _judge(result: Joints, split: str, parts: Runs, seed: int, quick: bool) -> N
 
 
 def _quiet(result: Joints, words: str, rival: Rival, own: Calibrated, healthy: Sequence[Log]) -> None:
-    """One-step errors, the median over six sensors; and how often a score passes its limit where nothing lies."""
+    """Median one-step errors over six sensors; and how often a score exceeds its limit in healthy runs."""
     seen = watch(own.uncalibrated, healthy)
     score, error = seen.score, one_step_error(seen)
     for group in ("tachometers", "encoders"):
@@ -93,38 +93,38 @@ def _quiet(result: Joints, words: str, rival: Rival, own: Calibrated, healthy: S
 def _isolate(
     result: Joints, words: str, rival: Rival, model: Model, faults: Sequence[Trial], healthy: Sequence[Log]
 ) -> None:
-    """As it runs: right isolation of every kind and size, over stretches that were calm before, with chance beside."""
+    """Correct isolation for every kind and size over stretches without an earlier alarm, and the rate by chance."""
     quiet = watch(model, healthy)
     far, calm = quiet.fault.any(axis=2).mean(), isolated(quiet, np.zeros(len(healthy), int)).calm.mean()
     result.real.add(f"{words} as-run", rival.method, {"far": float(far), "calm": float(calm)})
     chance = np.array([_chance(quiet, column) for column in range(SENSORS)])
     seen = watch(model, [trial.log for trial in faults])
     column = np.array([trial.column for trial in faults])
-    became, silent = isolated(seen, column), missed(seen, column)
+    outcome, missing = isolated(seen, column), missed(seen, column)
     kinds = [(trial.kind, trial.size) for trial in faults]
-    five = np.array([kind in SINGLE and (kind == "frozen" or size == 5.0) for kind, size in kinds]) & became.calm
-    pooled = {"detection_rate": _mean(became.right[five])}
+    five = np.array([kind in SINGLE and (kind == "frozen" or size == 5.0) for kind, size in kinds]) & outcome.calm
+    pooled = {"detection_rate": _mean(outcome.right[five])}
     result.injected.add(f"{words} {ALL}", rival.method, pooled, " or ".join(SINGLE))
     for kind, size in dict.fromkeys(kinds):
-        mine = np.array([one == (kind, size) for one in kinds]) & became.calm
+        mine = np.array([one == (kind, size) for one in kinds]) & outcome.calm
         for group, part in (GROUPS if words == SHOWN else {ALL: GROUPS[ALL]}).items():
             rows = mine & np.isin(column, np.arange(SENSORS)[part])
             if kind == "missing":
-                numbers = {"detection_rate": _mean(silent[rows])}
+                numbers = {"detection_rate": _mean(missing[rows])}
             else:
-                numbers = {"detection_rate": _mean(became.right[rows]), "chance": float(chance[part].mean())}
-                numbers["delay_steps"] = _median(became.delay[rows & became.right])
+                numbers = {"detection_rate": _mean(outcome.right[rows]), "chance": float(chance[part].mean())}
+                numbers["delay_steps"] = _median(outcome.delay[rows & outcome.right])
             result.injected.add(f"{words} {group}", rival.method, numbers, kind, _size(kind, size))
     if rival.method == NETWORK and words == SHOWN:
         for i in np.flatnonzero(five):
-            result.accused[column[i], :SENSORS] += became.named[i]
-            result.accused[column[i], SENSORS] += not became.named[i].any()
+            result.accused[column[i], :SENSORS] += outcome.named[i]
+            result.accused[column[i], SENSORS] += not outcome.named[i].any()
 
 
 def _chance(quiet: Result, column: int) -> float:
-    """How often it would pass for a fault of this sensor that nothing lies."""
-    became = isolated(quiet, np.full(len(quiet.channel), column))
-    return _mean(became.right[became.calm])
+    """How often a healthy stretch counts as correct isolation of this sensor."""
+    outcome = isolated(quiet, np.full(len(quiet.channel), column))
+    return _mean(outcome.right[outcome.calm])
 
 
 def _median(delay: Float[np.ndarray, " N"]) -> float:

@@ -1,4 +1,4 @@
-"""Who is compared: the paper's network in three variants, what is plainer, and a filter that knows the arm."""
+"""The compared methods: the paper's network in three variants, two baselines, and a filter with a model of the arm."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from functools import partial
 from sensorfault.logs.table import Log
 from sensorfault.methods.arm import online_network
 from sensorfault.methods.arm.arm_kalman import arm_kalman
-from sensorfault.methods.arm.online_network import Setting as Taught
+from sensorfault.methods.arm.online_network import Setting
 from sensorfault.methods.catalog import METHODS
 from sensorfault.numerics.two_link import Constants
 from sensorfault.runtime.model import Model
@@ -18,18 +18,18 @@ from sensorfault.training.session import SILENT
 NETWORK, KALMAN = "online-network", "arm-kalman"
 PLAIN = ("persistence", "linear-extrapolation")
 SCRATCH, AS_PRINTED = "scratch", "scratch absolute"
-FIXED = "fixed"  # limits, as printed, that know nothing of how well the network has lately foretold
-VARIANTS = {  # of the network, by what a row's condition calls it
+FIXED = "fixed"  # limits as in the paper, without the residual's recent RMS
+VARIANTS = {  # of the network, by their name in a row's condition
     "": Learning(),
     SCRATCH: Learning(scratch=True),
     AS_PRINTED: Learning(scratch=True, rate=0.3, iterations=10, absolute=True),  # each sample to convergence
 }
-DEEP = Taught(Learning(hidden=10, delays=(3, 1)), lately=20, horizon=1)  # for six joints
+DEEP = Setting(Learning(hidden=10, delays=(3, 1)), rms_ticks=20, horizon=1)  # for six joints
 
 
 @dataclass(frozen=True)
 class Rival:
-    """A method as the catalog calls it, in a variant; `build` takes a healthy log and a seed."""
+    """A method of the catalog in one variant; `build` takes a healthy log and a seed."""
 
     method: str
     variant: str
@@ -37,17 +37,17 @@ class Rival:
 
 
 def of_two_links(arm: Constants, theta: Mapping[str, float]) -> tuple[Rival, ...]:
-    """On the paper's arm, whose constants the filter knows; `theta`: the paper's thresholds, by path."""
+    """The methods for the paper's arm; the filter knows its constants; `theta`: the paper's thresholds, by path."""
     networks = (
-        Rival(NETWORK, variant, partial(_network, setting=Taught(learning, theta=theta, horizon=SAMPLES)))
+        Rival(NETWORK, variant, partial(_network, setting=Setting(learning, theta=theta, horizon=SAMPLES)))
         for variant, learning in VARIANTS.items()
     )
     return (*networks, *_plain(), Rival(KALMAN, "", lambda log, seed: arm_kalman(KALMAN, log, arm)))
 
 
 def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
-    """On the real arm, of which there is no model; `groups`: paths that are foretold apart from the others."""
-    settings = {"": DEEP, FIXED: replace(DEEP, lately=0)}
+    """The methods for the real arm, which has no model; `groups`: paths that a separate network predicts."""
+    settings = {"": DEEP, FIXED: replace(DEEP, rms_ticks=0)}
     networks = (
         Rival(NETWORK, variant, partial(_network, setting=replace(setting, groups=groups)))
         for variant, setting in settings.items()
@@ -55,7 +55,7 @@ def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
     return (*networks, *_plain())
 
 
-def _network(log: Log, seed: int, setting: Taught) -> Model:
+def _network(log: Log, seed: int, setting: Setting) -> Model:
     return online_network.build(log, seed, SILENT, setting)
 
 

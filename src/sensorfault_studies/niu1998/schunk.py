@@ -1,4 +1,4 @@
-"""Runs of a real arm: six joints of a Schunk, 4 ms. Read straight from the archive.
+"""Runs of a real arm: six joints of a Schunk arm, 4 ms. Read directly from the archive.
 
 Measured for S. Liu & M. Althoff, Reachset conformance of forward dynamic models for the formal analysis of robots (IROS
 2018). The rates were smoothed offline: angle and rate of a joint are not independent sensors.
@@ -25,7 +25,7 @@ def runs(archive: Path) -> tuple[Log, ...]:
     """All runs, in the order of their numbers.
 
     Raises:
-        LogError: the archive is not there, or a run is not as its readme says.
+        LogError: the archive does not exist, or a run does not have the format of its readme.
     """
     found: dict[str, dict[str, Float[np.ndarray, "T n"]]] = {}
     try:
@@ -43,7 +43,7 @@ def runs(archive: Path) -> tuple[Log, ...]:
 
 
 def _log(run: str, tables: dict[str, Float[np.ndarray, "T n"]]) -> Log:
-    """Torques have a row less: nothing was commanded at the last tick."""
+    """Torques have one row less: nothing was commanded at the last tick."""
     empty = np.empty((0, 0))
     time, trajectory, torque = (tables.get(what, empty) for what in ("time", "trajectory", "input"))
     rows = len(time)
@@ -54,6 +54,6 @@ def _log(run: str, tables: dict[str, Float[np.ndarray, "T n"]]) -> Log:
         )
     angles, rates = trajectory[:, :JOINTS], trajectory[:, JOINTS:]
     value = np.concatenate([rates, angles, np.vstack([torque, np.full(JOINTS, np.nan)])], axis=1)
-    said = channels(JOINTS)
-    sensors = tuple(Sensor(channel.sensor, PERIOD_S) for channel in said)
-    return Log(time[:, 0], value, np.isfinite(value), said, sensors, run.replace("_", " "))
+    columns = channels(JOINTS)
+    sensors = tuple(Sensor(channel.sensor, PERIOD_S) for channel in columns)
+    return Log(time[:, 0], value, np.isfinite(value), columns, sensors, run.replace("_", " "))

@@ -1,4 +1,4 @@
-"""Paper B: the two-joint arm as printed, then a real arm of six joints."""
+"""Niu & Zhao 1998: the two-joint arm of the paper, then a real arm with six joints."""
 
 from dataclasses import replace
 
@@ -17,11 +17,13 @@ def study(effort: Effort) -> Findings:
     """All of B.
 
     Raises:
-        LogError: the runs of the real arm are not there; said before any work is done.
+        LogError: the runs of the real arm do not exist; raised before any work is done.
     """
     real("arm")
-    run = drifts(replace(effort, tell=lambda doing, share: effort.tell(doing, SIMULATED * share)))
-    arm = joints(replace(effort, tell=lambda doing, share: effort.tell(doing, SIMULATED + (1 - SIMULATED) * share)))
+    run = drifts(replace(effort, progress=lambda doing, share: effort.progress(doing, SIMULATED * share)))
+    arm = joints(
+        replace(effort, progress=lambda doing, share: effort.progress(doing, SIMULATED + (1 - SIMULATED) * share))
+    )
     rows = (*run.rows(), *arm.injected.rows(), *arm.real.rows())
     figures = (*of_the_run(run), *of_slow_drifts(rows), of_isolation(arm.accused))
     return Findings(rows, figures, remarks(run, arm, effort))
@@ -29,7 +31,7 @@ def study(effort: Effort) -> Findings:
 
 STUDY = Study(
     "niu1998",
-    "Sensors of a robot arm, and a network that learns while it watches",
+    "Sensors of a robot arm, and a network that learns online",
     "Niu & Zhao 1998",
     study,
     {"B": "Drifts, and faults of all kinds"},

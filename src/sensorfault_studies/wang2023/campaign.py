@@ -1,4 +1,4 @@
-"""Many runs of one drive at once: each with errors of its own in the pseudoranges, all else shared."""
+"""Many runs of one drive at once: each has its own pseudorange errors, everything else is shared."""
 
 from dataclasses import dataclass, replace
 from functools import cache
@@ -13,13 +13,13 @@ from sensorfault.logs.table import Log
 from sensorfault_studies.wang2023.drive import drive
 from sensorfault_studies.wang2023.navigated import Navigated, horizontal, many
 
-TOGETHER = 41  # runs at once: two rounds for 81 trials, three for 120 healthy runs
-SETTLED = 60  # epochs until the filter has its heading and the windows are full
+AT_ONCE = 41  # runs at once: two rounds for 81 trials, three for 120 healthy runs
+SETTLED = 60  # epochs until the filter has a heading and the windows are full
 
 
 @dataclass(frozen=True)
 class Case:
-    """E epochs whose pseudoranges have no errors, and where the vehicle really was (ECEF) [m]."""
+    """E epochs with error-free pseudoranges, and the true position of the vehicle (ECEF) [m]."""
 
     framing: Framing
     epochs: Log
@@ -27,9 +27,8 @@ class Case:
 
 
 class Flown(NamedTuple):
-    """N runs of E epochs: which satellites are flagged, the largest score of an epoch (NaN: no test), how far off the
-    position is on the level [m], and the innovations [SI], themselves and in their standard deviations (NaN: not
-    tested).
+    """N runs of E epochs: flagged satellites, largest score of each epoch (NaN: no test), horizontal position error
+    [m], and innovations [SI], also divided by their standard deviations (NaN: not tested).
     """
 
     flagged: Bool[np.ndarray, "N E S"]
@@ -41,10 +40,10 @@ class Flown(NamedTuple):
 
 @cache
 def case(rates: bool = False) -> Case:
-    """The real drive under simulated satellites, without errors of the pseudoranges (those of the rates are there).
+    """The real drive with simulated satellites, without pseudorange errors (the range rates have errors).
 
     Raises:
-        LogError: the real drive is not there.
+        LogError: the real drive does not exist.
     """
     ride = drive("gaussian", 0)
     how = framing(ride.log, ride.sky.names, rates)
@@ -55,21 +54,21 @@ def case(rates: bool = False) -> Case:
 
 
 def flown(monitor: Monitor, of: Case, error: Float[np.ndarray, "N E S"]) -> Flown:
-    """Every run from a fresh start."""
-    parts = [_some(monitor, of, error[first : first + TOGETHER]) for first in range(0, len(error), TOGETHER)]
+    """Every run from the initial state."""
+    parts = [_some(monitor, of, error[first : first + AT_ONCE]) for first in range(0, len(error), AT_ONCE)]
     return Flown(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
 def _some(monitor: Monitor, of: Case, error: Float[np.ndarray, "N E S"]) -> Flown:
-    """At most TOGETHER of them; the rest of as many is flown for nothing, so that all are compiled once."""
-    value = np.repeat(of.epochs.value[None], TOGETHER, axis=0)
+    """At most AT_ONCE runs; fewer are filled up to AT_ONCE, so that one compilation serves all."""
+    value = np.repeat(of.epochs.value[None], AT_ONCE, axis=0)
     value[: len(error), :, : error.shape[2]] += error
-    result = Navigated(*(one[: len(error)] for one in many(monitor, of.epochs, value)))
-    innovation = np.where(result.tested, result.innovation, np.nan)
-    off_m = horizontal(result.position, of.position)
-    return Flown(result.flagged, result.score, off_m, innovation, innovation / result.sigma)
+    run = Navigated(*(one[: len(error)] for one in many(monitor, of.epochs, value)))
+    innovation = np.where(run.tested, run.innovation, np.nan)
+    off_m = horizontal(run.position, of.position)
+    return Flown(run.flagged, run.score, off_m, innovation, innovation / run.sigma)
 
 
 def false_alarms(result: Flown) -> float:
-    """Share of the epochs of healthy runs in which some satellite is flagged."""
+    """Share of the epochs of healthy runs with a flagged satellite."""
     return float(result.flagged[:, SETTLED:].any(axis=2).mean())

@@ -1,4 +1,4 @@
-"""The tests of paper C, its rivals and ours, each behind the same filter of the same satellites."""
+"""The compared tests: those of Wang et al. 2023 and ours, each on the same filter with the same satellites."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -37,7 +37,7 @@ SEED = 0  # of the history
 
 @dataclass(frozen=True)
 class Contender:
-    """A method at its author's limit (none: that is not told) and with a limit to be set on each score."""
+    """A method with its author's limit (None: not published), and with a limit to be set on each score."""
 
     name: str
     printed: Monitor | None
@@ -45,7 +45,7 @@ class Contender:
 
 
 def contenders(of: Case, healthy: Float[np.ndarray, "N E S"], factor: float) -> tuple[Contender, ...]:
-    """All of them with so many times the pseudoranges' sigma in the filter, learned from healthy runs."""
+    """All methods, fitted on healthy runs; `factor`: of the pseudorange sigma in the filter."""
     how = of.framing
     alone, bank = (navigation(how, Filter(factor, on)) for on in (False, True))
     plain, spared = (flown(monitor(how, at), of, healthy) for at in (alone, bank))
@@ -84,15 +84,15 @@ def contenders(of: Case, healthy: Float[np.ndarray, "N E S"], factor: float) -> 
     )
 
 
-def unwatched(of: Case, factor: float) -> Monitor:
-    """The filter that takes in everything."""
+def without_exclusion(of: Case, factor: float) -> Monitor:
+    """The filter that uses every measurement."""
     return monitor(of.framing, navigation(of.framing, Filter(factor)))
 
 
 def scored(
     how: Framing, normalised: Float[np.ndarray, "N E C"], lengths: tuple[int, ...]
 ) -> tuple[Means, Float[np.ndarray, "M W"]]:
-    """Windows of so many epochs with the spreads of these healthy innovations, and their means."""
+    """Windows of so many epochs with the spreads of these healthy innovations, and the means."""
     period = how.period_s
     means = windows(tuple(period * n for n in lengths), period, rail.GAP * period, normalised.shape[2])
     tape = np.concatenate([mean_tape(means, run[SETTLED:], period)[max(lengths) :] for run in normalised])

@@ -1,4 +1,4 @@
-"""Condition (a): the track and the inertial unit of a real drive, under satellites that are simulated."""
+"""Condition (a): track and inertial unit of a real drive, with simulated satellites."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,27 +22,27 @@ from sensorfault.vehicles.car import roles
 from sensorfault_studies.data import real
 
 FOLDER = "road/gnss_imu_drive0708"
-# The inertial unit's rows are told late by this beside the positions: both the turns and the forces fit best then.
-# (Beside the receiver's velocities it is half of that; they are averages over the quarter of a second before.)
+# Lag of the inertial unit's rows behind the positions, for which both turns and forces fit best. (Behind the receiver's
+# velocities it is half of that, because these are averages over the quarter of a second before.)
 IMU_LATE_S = 0.25
-START_S, EPOCHS = 56.0, 413  # from when the car goes 8 m/s on
-TICKS = 100  # of the inertial unit between two epochs of satellites
+START_S, EPOCHS = 56.0, 413  # from the time when the car moves at 8 m/s
+TICKS = 100  # ticks of the inertial unit between two satellite epochs
 USED = 9
-# Time of GPS at the start: nine satellites from 18° up. Of six hours tried it is the one at which a limit on each
-# innovation finds what the forerunner of this study found: 64 and 90 % of steps of 10 and 15 m.
+# GPS time at the start, with nine satellites above 18°. Of six hours tried this one reproduces an earlier version of
+# this study: a limit on each innovation detects 64 and 90 % of steps of 10 and 15 m.
 SKY_S = 18_000.0
-SMOOTHING = 1e-3  # of the spline: it leaves 4 mm to the positions, whose last digit is 1 cm
-LEAST_SPEED = 1.0  # a slower car points where it did before [m/s]
+SMOOTHING = 1e-3  # of the spline; its residual is 4 mm, and the last digit of the positions is 1 cm
+LEAST_SPEED = 1.0  # a slower car keeps its heading [m/s]
 
 
 def drive(noise: Noise, seed: int) -> Ride:
-    """The drive from its 56th second on, 413 epochs at 1 Hz; only the errors of the pseudoranges are of the seed.
+    """The drive from second 56 on, 413 epochs at 1 Hz; only the pseudorange errors depend on the seed.
 
-    The nine highest of 36 satellites are used. The inertial unit is as it is, turned into forward, right and down by
+    The nine highest of 36 satellites are used. The inertial unit is as recorded, rotated to forward, right and down by
     `fit_mounting`; the attitude in the truth is that of the track (roll 0).
 
     Raises:
-        LogError: the real drive is not there.
+        LogError: the real drive does not exist.
     """
     base = _base(real(FOLDER))
     error = pseudoranges(noise, [seed])[0]
@@ -53,17 +53,17 @@ def drive(noise: Noise, seed: int) -> Ride:
 
 
 def pseudoranges(noise: Noise, seeds: Sequence[int]) -> Float[np.ndarray, "N E S"]:
-    """The errors of the pseudoranges of these seeds alone [m]: all that differs between their drives, but for Doppler.
+    """Only the pseudorange errors of these seeds [m]; apart from Doppler, everything else is equal in their drives.
 
     Raises:
-        LogError: the real drive is not there.
+        LogError: the real drive does not exist.
     """
     return pseudorange.errors(noise, seeds, _base(real(FOLDER)).sky.elevation)
 
 
 @dataclass(frozen=True)
 class _Base:
-    """What all seeds share: T ticks, E epochs."""
+    """The data that all seeds share: T ticks, E epochs."""
 
     time: Float[np.ndarray, " T"]
     inertial: Float[np.ndarray, "T 6"]
@@ -92,7 +92,7 @@ def _base(folder: Path) -> _Base:
 
 
 def _track(log: Log, at: Float[np.ndarray, " T"]) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
-    """Position and velocity, ECEF [m], [m/s], at these times of the receiver's."""
+    """Position and velocity, ECEF [m], [m/s], at these times of the receiver."""
     columns = [log.index(f"gnss.{name}") for name in ("latitude", "longitude", "height")]
     fixes = log.fresh[:, columns[0]]
     place = geodetic_to_ecef(*log.value[fixes][:, columns].T)
@@ -113,7 +113,7 @@ def _inertial(log: Log) -> Float[np.ndarray, "T 6"]:
 
 
 def _along(position: Float[np.ndarray, "T 3"], velocity: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "T 3 3"]:
-    """Body to ECEF of a vehicle that points where it goes and does not lean."""
+    """Rotation from body to ECEF of a vehicle that points in its direction of motion, without roll."""
     moving = np.linalg.norm(velocity, axis=1) > LEAST_SPEED
     last = np.maximum.accumulate(np.where(moving, np.arange(len(moving)), 0))
     forward = velocity[last] / np.linalg.norm(velocity[last], axis=1, keepdims=True)

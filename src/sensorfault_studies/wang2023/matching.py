@@ -1,4 +1,4 @@
-"""Limits at one rate of false alarms, achieved in the closed loop: what is refused changes what comes after."""
+"""Limits for a common false alarm rate in closed loop, where every rejection changes the later innovations."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,13 +10,13 @@ from sensorfault.core.monitor import Monitor
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault_studies.wang2023.campaign import SETTLED, Case, false_alarms, flown
 
-ROUNDS, CLOSE = 6, 1.08  # so near the rate is near enough
-STEEP = -6.0  # slope of log rate over log limit to begin with
+ROUNDS, CLOSE = 6, 1.08  # a rate within this factor is accepted
+STEEP = -6.0  # initial slope of log rate over log limit
 _FAR = 0.4  # a round changes a limit by no more than this, in logarithms
 
 
 def limited(monitor: Monitor, limit: float) -> Monitor:
-    """With this limit on each score of the first branch."""
+    """The monitor with this limit on each score of the first branch."""
     tests = jnp.ones_like(monitor.branches[0].threshold.limit)  # type: ignore[attr-defined]
     made: Monitor = eqx.tree_at(lambda m: m.branches[0].threshold, monitor, Fixed(limit * tests))
     return made
@@ -25,9 +25,9 @@ def limited(monitor: Monitor, limit: float) -> Monitor:
 def matched(
     monitor: Monitor, of: Case, healthy: Float[np.ndarray, "N E S"], rate: float
 ) -> tuple[Monitor, Calibrated, float]:
-    """The monitor at this rate of false alarms an epoch; its limit with an interval; the rate achieved on these runs.
+    """The monitor for this false alarm rate of an epoch; its limit with an interval; the rate achieved on these runs.
 
-    The interval is that of the open loop about its own limit, by whole runs, moved to the limit of the closed loop.
+    The interval is that of the open-loop limit, by resampling whole runs, scaled to the closed-loop limit.
     """
     uncalibrated = flown(limited(monitor, np.inf), of, healthy)
     open_loop = calibrated(list(uncalibrated.score[:, SETTLED:]), rate, 0)
@@ -46,7 +46,7 @@ def matched(
 
 
 def _next(tried: list[tuple[float, float]], aim: float) -> float:
-    """By the secant of the two nearest the aim."""
+    """The next limit, by the secant through the two tried limits nearest to the aim."""
     near = sorted(tried, key=lambda one: abs(one[1] - aim))[:2]
     slope = STEEP
     if len(near) == 2 and near[0][0] != near[1][0]:

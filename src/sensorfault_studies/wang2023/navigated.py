@@ -1,4 +1,4 @@
-"""Where a filter believed to be, epoch by epoch, and what it found of each satellite."""
+"""The position of a filter at every epoch, and its results for each satellite."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from sensorfault.runtime.runners import samples
 
 
 class Navigated(NamedTuple):
-    """T epochs of C channels and S satellites, as the filter ends each; `score`: the first branch's largest, or NaN."""
+    """T epochs of C channels and S satellites, after each update; `score`: the largest of the first branch, or NaN."""
 
     position: Float[np.ndarray, "*n T 3"]  # ECEF [m]
     innovation: Float[np.ndarray, "*n T C"]  # [SI]
@@ -30,12 +30,12 @@ class Navigated(NamedTuple):
 
 
 def navigated(monitor: Monitor, epochs: Log) -> Navigated:
-    """A log of epochs through a monitor whose residual is `InsGnss`, from a fresh start."""
+    """Run a monitor with residual `InsGnss` over a log of epochs, from the initial state."""
     return Navigated(*(np.asarray(part) for part in _run(monitor, _rows(epochs))))
 
 
 def many(monitor: Monitor, epochs: Log, values: Float[np.ndarray, "N T C"]) -> Navigated:
-    """The same log N times with other values, at once."""
+    """Run the same log N times with different values, all at once."""
     return Navigated(*(np.asarray(part) for part in _fleet(monitor, _rows(epochs), jnp.asarray(values))))
 
 
@@ -50,8 +50,8 @@ def _run(monitor: Monitor, rows: Sample) -> tuple[Array, ...]:
         residual, at = report.residual, after.residual.nav.position
         sigma = jnp.sqrt(jnp.diagonal(residual.cov))
         flagged = report.verdict.sensor == FAULT
-        result = at, residual.value, sigma, residual.valid, report.trust.measured, flagged, _largest(report.scores[0])
-        return after, result
+        kept = at, residual.value, sigma, residual.valid, report.trust.measured, flagged, _largest(report.scores[0])
+        return after, kept
 
     done: tuple[Array, ...] = lax.scan(one, monitor.init(), rows)[1]
     return done
@@ -69,7 +69,7 @@ def _fleet(monitor: Monitor, rows: Sample, values: Float[Array, "N T C"]) -> tup
 
 
 def horizontal(position: Float[np.ndarray, "*n T 3"], true: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "*n T"]:
-    """How far off on the level [m]; both ECEF [m]."""
+    """Horizontal position error [m]; both positions ECEF [m]."""
     latitude, longitude, _ = ecef_to_geodetic(true)
     off = np.einsum("tij,...tj->...ti", enu_axes(latitude, longitude), position - true)
     return np.asarray(np.hypot(off[..., 0], off[..., 1]))

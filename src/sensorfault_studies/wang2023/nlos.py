@@ -1,4 +1,4 @@
-"""Experiment C, condition (c): signals out of sight, found and left out, by labels; where the car was, by its truth."""
+"""Experiment C, condition (c): detection and exclusion of signals without line of sight, and the position error."""
 
 from dataclasses import dataclass
 
@@ -25,13 +25,13 @@ from sensorfault_studies.wang2023.navigated import Navigated, horizontal, naviga
 from sensorfault_studies.wang2023.nlos_remarks import NONE, remarks
 from sensorfault_studies.wang2023.smartloc import Town, town
 
-UNSCORED = 25  # epochs until a filter has begun
-MOST = 12  # satellites taken out at one epoch
-ONE_SIDED, TWO_SIDED = 2.33, 2.58  # where a normal number is once in a hundred
+UNSCORED = 25  # epochs at the start of a filter that are not scored
+MOST = 12  # satellites excluded at one epoch, at most
+ONE_SIDED, TWO_SIDED = 2.33, 2.58  # limits that a standard normal variable exceeds with probability 0.01
 
-# Turn rate by what it says at rest, speed by its steps of 0.03 m/s and slipping, forces by slopes nobody measures
-# (0.1 m/s/√s), the clock as a TCXO's. Each is plausible before any look at the truth, but they were chosen among about
-# a hundred settings by this very log: how much hangs on that, the other WAYS show.
+# Turn rate noise as measured at rest, speed noise from steps of 0.03 m/s and slip, force noise from unmeasured road
+# slopes (0.1 m/s/√s), clock noise of a TCXO. All are plausible without the truth, but they were chosen among about a
+# hundred settings on this same log; the other WAYS show how much depends on them.
 GRADE = Grade(*(jnp.asarray(x) for x in (0.002, 0.1, 1e-4, 1e-3, 0.1, 0.19, 0.01, 0.2, 1.5)))
 WHEEL_M_S, ASIDE_M_S = 0.1, 0.1
 # σ² = a + b 10^(-C/N0 / 10): b as of heavily degraded signals (10⁶ m² Hz), a as of slightly degraded ones (10 m²).
@@ -42,9 +42,9 @@ OPEN_SKY = ElevationNoise(*(jnp.asarray(x) for x in (1.4, 4.0, np.deg2rad(15.0),
 
 @dataclass(frozen=True)
 class Way:
-    """How satellites are weighed and judged.
+    """How satellites are weighted and tested.
 
-    `slope`: b of C/N0 [m² Hz], or as under an open sky. `late`: one side counts. `limit`: in standard deviations.
+    `slope`: b of C/N0 [m² Hz], None: noise for an open sky. `late`: one-sided test. `limit`: in standard deviations.
     """
 
     condition: str
@@ -70,16 +70,16 @@ WAYS = (
 
 
 def nlos(effort: Effort) -> Findings:
-    """Each way with the wheels and without; what C/N0 alone tells, and what a receiver that knew its place could.
+    """Each way with and without wheel speed; C/N0 alone; and a receiver that knows its true position.
 
     Raises:
-        LogError: the real log is not there.
+        LogError: the real log does not exist.
     """
     of = town()
     numbers = Numbers("C", "smartloc", "real")
     for i, wheels in enumerate((True, False)):
         for k, way in enumerate(WAYS):
-            effort.tell(f"smartLoc: {way.method}", (i * len(WAYS) + k) / (2 * len(WAYS)))
+            effort.progress(f"smartLoc: {way.method}", (i * len(WAYS) + k) / (2 * len(WAYS)))
             words = f"{way.condition} {'wheels' if wheels else 'bare'}"
             numbers.add(words, way.method, scores(of, through(of, way, wheels)))
     for words, score in (("cn0-alone", -of.cn0), ("known-place", _known_place(of))):
@@ -89,7 +89,7 @@ def nlos(effort: Effort) -> Findings:
 
 
 def through(of: Town, way: Way, wheels: bool) -> Navigated:
-    """The drive through the filter, judged in this way."""
+    """Run the filter over the drive in this way."""
     log = of.log if wheels else of.bare
     many = len(of.names)
     residual = InsGnss(
@@ -107,7 +107,7 @@ def through(of: Town, way: Way, wheels: bool) -> Navigated:
 
 
 def scores(of: Town, run: Navigated) -> dict[str, float]:
-    """Position over the whole drive but its start; what was found, where labels are, by innovations in metres."""
+    """Position error over the whole drive without its start; detection where there are labels."""
     off = horizontal(run.position, of.position)[UNSCORED:]
     tested = run.tested
     known = np.isfinite(of.nlos) & tested
@@ -129,7 +129,7 @@ def _ranked(of: Town, score: Float[np.ndarray, "T S"], there: Bool[np.ndarray, "
 
 
 def _known_place(of: Town) -> Float[np.ndarray, "T S"]:
-    """How much too long each pseudorange is by the true place and the clock that satellites in sight show [m]."""
+    """Excess length of each pseudorange, from the true position and the clock of the satellites in sight [m]."""
     place = np.stack([_column(of, f"{axis}_m") for axis in "xyz"], axis=2)
     left = _column(of, "corrected_m") - np.asarray(sight.distance(of.position[:, None], place))
     straight = np.where((of.nlos == 0) & np.array([name[0] == "G" for name in of.names]), left, np.nan)

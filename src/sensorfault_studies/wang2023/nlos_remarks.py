@@ -1,4 +1,4 @@
-"""What the numbers of smartLoc say, in sentences."""
+"""Remarks on the numbers of smartLoc."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ LOST_M = 1e3
 
 
 def remarks(numbers: Numbers, nlos: Float[np.ndarray, "T S"]) -> tuple[str, ...]:
-    """What exclusion brings, how well a detour can be told at all, and how much hangs on the setting."""
+    """The benefit of exclusion, the limit of any detection of reflected signals, and the effect of the setting."""
     return tuple(_remarks(numbers, nlos))
 
 
@@ -21,7 +21,7 @@ def _remarks(numbers: Numbers, nlos: Float[np.ndarray, "T S"]) -> Iterator[str]:
         words = f"carrier {wheels}"
         before, after = ([numbers.mean(words, method, f"error_p{p}_m") for p in (50, 95)] for method in (NONE, "late"))
         yield (
-            f"smartLoc, {'with' if wheels == 'wheels' else 'without'} wheels: leaving out what is late takes the "
+            f"smartLoc, {'with' if wheels == 'wheels' else 'without'} wheel speed: excluding late signals changes the "
             f"horizontal error from {before[0]:.1f} to {after[0]:.1f} m (50 %) and from {before[1]:.1f} to "
             f"{after[1]:.1f} m (95 %)."
         )
@@ -31,16 +31,17 @@ def _remarks(numbers: Numbers, nlos: Float[np.ndarray, "T S"]) -> Iterator[str]:
         for words, method in (("cn0-alone", NONE), ("known-place", NONE), ("carrier wheels", "late"))
     )
     yield (
-        f"smartLoc: {int(known.sum())} labels in the first minute, {np.mean(nlos[known]):.0%} out of sight. "
-        f"Innovations of the filter with wheels rank them with an AUC of {found}, C/N0 alone with {alone}, residuals "
-        f"at the true place with the clock of satellites in sight with {place}: about as well as ranges can tell."
+        f"smartLoc: {int(known.sum())} labels in the first minute, {np.mean(nlos[known]):.0%} without line of sight. "
+        f"Innovations of the filter with wheel speed rank them with an AUC of {found}, C/N0 alone with {alone}. "
+        f"Residuals at the true position with the clock of the satellites in sight reach {place}; pseudoranges allow "
+        "about no more."
     )
     others = [row for row in numbers.rows() if row.method == "late" and row.condition.endswith("wheels")]
     low, high = ([f(r.value for r in others if r.metric == f"error_p{p}_m") for p in (50, 95)] for f in (min, max))
     yield (
-        f"smartLoc: noises and limit were chosen by this log, among a hundred; with others the error with wheels is "
-        f"{low[0]:.1f} to {high[0]:.1f} m (50 %) and {low[1]:.1f} to {high[1]:.1f} m (95 %)."
+        "smartLoc: noise and limit were chosen on this same log, among a hundred settings; with other settings the "
+        f"error with wheel speed is {low[0]:.1f} to {high[0]:.1f} m (50 %) and {low[1]:.1f} to {high[1]:.1f} m (95 %)."
     )
     wild = sorted({row.condition for row in numbers.rows() if row.metric == "error_p95_m" and row.value > LOST_M})
     if wild:
-        yield f"smartLoc: a test of both sides with noise as under an open sky loses the car ({', '.join(wild)})."
+        yield f"smartLoc: a two-sided test with the noise of an open sky loses the position ({', '.join(wild)})."

@@ -1,4 +1,4 @@
-"""Experiment C, condition (b): a simulated train, judged as a user would: fit on one ride, detect on others."""
+"""Experiment C, condition (b): a simulated train as a user sees it: fit on one ride, detect on others."""
 
 from sensorfault.evaluation.judge import judge
 from sensorfault.faults.fault import Fault
@@ -13,32 +13,32 @@ from sensorfault_studies.numbers import Numbers
 from sensorfault_studies.wang2023.contenders import CHI_SQUARE, LOF, OURS
 
 METHODS = (CHI_SQUARE, LOF, OURS)
-TAUGHT, FIRST, RIDES = 500, 510, 3  # seeds
+TRAINING, FIRST, RIDES = 500, 510, 3  # seed of the training ride, first seed and number of the test rides
 LONG_S, ONSET_S, LASTS_S = 600.0, 300.0, 80.0
 FAULTS = (("offset", 15.0), ("offset", 30.0), ("drift", 0.5), ("drift", 2.0))
 WORDS = "tunnels, as fitted"
 
 
 def rides(numbers: Numbers, effort: Effort) -> None:
-    """What each recipe finds with the limits that it sets itself, and how often it cries wolf on a healthy ride."""
-    taught = ride(LONG_S, TAUGHT).log
+    """Detection by each recipe with the limits that it sets itself, and its false alarms on a healthy ride."""
+    training = ride(LONG_S, TRAINING).log
     logs = [ride(LONG_S, FIRST + k).log for k in range(1 if effort.quick else RIDES)]
     for k, method in enumerate(METHODS):
-        effort.tell(f"rides: {method}", k / len(METHODS))
-        model = fit(taught, method, held_out=0.0)
+        effort.progress(f"rides: {method}", k / len(METHODS))
+        model = fit(training, method, held_out=0.0)
         for seed, log in enumerate(logs):
             alarms = len(detect(model, log).events)
             numbers.add(WORDS, method, {"false_alarms_per_hour": alarms / (log.duration_s / 3600)})
             satellite = _steady(log)
             for kind, size in FAULTS:
                 done = inject(log, [Fault(kind, satellite, RANGE, ONSET_S, LASTS_S, size)], seed)
-                (result,) = judge(detect(model, done.log), done.truth).outcomes
-                found = {"found": float(result.found), "innocents": float(result.false_isolations)}
-                numbers.add(WORDS, method, found | ({"delay_s": result.delay_s} if result.found else {}), kind, size)
+                (outcome,) = judge(detect(model, done.log), done.truth).outcomes
+                found = {"found": float(outcome.found), "false_isolations": float(outcome.false_isolations)}
+                numbers.add(WORDS, method, found | ({"delay_s": outcome.delay_s} if outcome.found else {}), kind, size)
 
 
 def _steady(log: Log) -> str:
-    """The satellite that is heard most often while the fault lasts."""
+    """The satellite with the most measurements during the fault."""
     part = log.between(ONSET_S, ONSET_S + LASTS_S)
     ranges = [i for i, channel in enumerate(log.channels) if channel.name == RANGE]
     return log.channels[max(ranges, key=lambda i: int(part.fresh[:, i].sum()))].sensor

@@ -1,4 +1,4 @@
-"""Condition (c): a car among high houses, where half of the signals come by a detour, and which do is known."""
+"""Condition (c): a car among high buildings; half of the signals are reflected, and labels say which."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -17,7 +17,7 @@ from sensorfault_studies.data import real
 FOLDER = "gnss/smartloc_berlin_potsdamer_platz"
 INPUT, TRUTH, LABELS = "Berlin_Potsdamer_Platz_Input.txt", "Berlin_Potsdamer_Platz_GT.txt", "RXM-RAWX.csv"
 SYSTEMS = "GR"
-# The labels' file begins an epoch earlier: with this its true places are the other's, to a micrometre.
+# The labels' file begins one epoch earlier: with this shift its true positions equal the other file's to a micrometre.
 LABELS_LATE_S = -0.2
 SAME_S = 0.05
 WHEEL = Channel("speed", "wheel", "m/s")
@@ -25,9 +25,9 @@ WHEEL = Channel("speed", "wheel", "m/s")
 
 @dataclass(frozen=True)
 class Town:
-    """T epochs of S satellites. `log`: with wheels and what an inertial unit would say by them; `bare`: satellites.
+    """T epochs of S satellites. `log`: with wheel speed and the inertial unit derived from it; `bare`: satellites only.
 
-    `nlos`: 1 for a satellite that was out of sight, 0 for one in sight, NaN where nobody knows (after one minute).
+    `nlos`: 1 for a satellite without line of sight, 0 for one in sight, NaN where unknown (after one minute).
     """
 
     log: Log
@@ -42,7 +42,7 @@ def town() -> Town:
     """The drive at Potsdamer Platz, 283 s at 5 Hz.
 
     Raises:
-        LogError: the real log is not there.
+        LogError: the real log does not exist.
     """
     return _town(real(FOLDER))
 
@@ -60,7 +60,7 @@ def _town(folder: Path) -> Town:
 
 
 def _with_wheels(log: Log, bare: Log, position: Float[np.ndarray, "T 3"]) -> Log:
-    """With the inertial unit that speed and turn rate stand for: it stays level, and its rate is about down alone.
+    """Add an inertial unit derived from speed and turn rate: it stays level and turns only about the vertical axis.
 
     Source: for such reduced systems A. Noureldin et al., Fundamentals of Inertial Navigation (2013), chapter 9.
     """
@@ -68,12 +68,12 @@ def _with_wheels(log: Log, bare: Log, position: Float[np.ndarray, "T 3"]) -> Log
     nothing = np.zeros(len(log))
     ahead = np.diff(speed, prepend=speed[0]) / np.diff(log.time, prepend=log.time[0] - log.period_s)
     weight = np.full(len(log), np.linalg.norm(gravity(position[0])))
-    said = np.stack([nothing, nothing, turn, ahead, speed * turn, -weight, speed], axis=1)
+    derived = np.stack([nothing, nothing, turn, ahead, speed * turn, -weight, speed], axis=1)
     own = tuple(Sensor(name, log.period_s) for name in ("gyro", "accelerometer", "wheel"))
     return Log(
         log.time,
-        np.concatenate([said, bare.value], axis=1),
-        np.concatenate([np.isfinite(said), bare.fresh], axis=1),
+        np.concatenate([derived, bare.value], axis=1),
+        np.concatenate([np.isfinite(derived), bare.fresh], axis=1),
         (*INERTIAL, WHEEL, *bare.channels),
         (*own, *bare.sensors),
         "smartLoc",
@@ -81,7 +81,7 @@ def _with_wheels(log: Log, bare: Log, position: Float[np.ndarray, "T 3"]) -> Log
 
 
 def _labels(log: Log, labels: Log, names: tuple[str, ...]) -> Float[np.ndarray, "T S"]:
-    """Each label at the tick of the log that it is of."""
+    """Each label at its tick of the log."""
     at = labels.time + LABELS_LATE_S
     tick = np.abs(log.time[None] - at[:, None]).argmin(axis=1)
     same = np.abs(log.time[tick] - at) < SAME_S

@@ -1,4 +1,4 @@
-"""Paper C: a train's satellites that lie, told by innovations, by local outlier factors, and by leaving one out."""
+"""Wang et al. 2023: faulty satellites of a train, by innovations, local outlier factors and leaving one out."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def study(effort: Effort) -> Findings:
     """All of C.
 
     Raises:
-        LogError: the real logs are not there; said before any work is done.
+        LogError: the real logs do not exist; raised before any work is done.
     """
     for folder in (drive.FOLDER, smartloc.FOLDER, walk.FOLDER):
         real(folder)
@@ -36,7 +36,7 @@ def study(effort: Effort) -> Findings:
 
 
 def _part(effort: Effort, begin: float, share: float) -> Effort:
-    return replace(effort, tell=lambda doing, done: effort.tell(doing, begin + share * done))
+    return replace(effort, progress=lambda doing, done: effort.progress(doing, begin + share * done))
 
 
 STUDY = Study(
@@ -44,5 +44,5 @@ STUDY = Study(
     "Faulty satellites of a train, one at a time or half of them",
     "Wang et al. 2023",
     study,
-    {"C": "A filter of satellites and inertial unit, and who is left out of it"},
+    {"C": "GNSS/INS filter, and the satellites that it excludes"},
 )

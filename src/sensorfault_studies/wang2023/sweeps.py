@@ -1,4 +1,4 @@
-"""Figures: how much of a fault each method sees, by its size, and how far off the position is meanwhile."""
+"""Figures: detection of a fault by each method and the position error during it, by size of the fault."""
 
 from sensorfault_studies.findings import Figure, Json
 from sensorfault_studies.numbers import Numbers
@@ -9,18 +9,18 @@ SHOWN = (NONE, CHI_SQUARE, "w-test", "aime-10", LOF, "lof-windows", "cumulative"
 AXES = {"step": "step [m]", "ramp": "ramp [m/s]"}
 METRICS = {
     "detection_rate": "share of the fault's epochs in which the satellite is flagged",
-    "hrmse_m": "horizontal error in the fault, rms [m]",
+    "hrmse_m": "RMS horizontal error during the fault [m]",
 }
 
 
 def sweeps(numbers: Numbers) -> tuple[Figure, ...]:
-    """Of heavy noise, all methods at one rate of false alarms."""
+    """The figures for heavy noise, all methods at a common false alarm rate."""
     return tuple(_sweep(numbers, kind, metric) for kind in AXES for metric in METRICS)
 
 
 def _sweep(numbers: Numbers, kind: str, metric: str) -> Figure:
     words = f"{HEAVY.words} {EQUAL}"
-    sizes = [lie.size for lie in HEAVY.lies if lie.kind == kind]
+    sizes = [fault.size for fault in HEAVY.faults if fault.kind == kind]
     data: list[Json] = []
     for method in SHOWN:
         y = [numbers.mean(words, method, metric, kind, size) for size in sizes]
@@ -33,7 +33,7 @@ def _sweep(numbers: Numbers, kind: str, metric: str) -> Figure:
         "yaxis": {"title": {"text": METRICS[metric]}},
     }
     caption = (
-        "A real drive under simulated satellites, heavy noise; one false alarm in a hundred epochs for each method."
+        "A real drive with simulated satellites and heavy noise; one false alarm in a hundred epochs for each method."
     )
     return Figure(
         f"c_{kind}_{metric}", f"{AXES[kind].split()[0]}s: {metric}", caption, {"data": data, "layout": layout}

@@ -1,4 +1,4 @@
-"""Faults of one satellite, and what became of them."""
+"""Faults of one satellite, and their detection."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ from jaxtyping import Float
 from sensorfault_studies.wang2023.campaign import Flown
 
 ONSETS, LASTS = (100, 200, 300), 80  # epochs
-LOST_M = 1000.0  # a position further off counts as so far off
+LOST_M = 1000.0  # larger position errors count as this [m]
 
 
 @dataclass(frozen=True)
-class Lie:
+class SatelliteFault:
     """A step [m] or a ramp [m/s] of one satellite, LASTS epochs long."""
 
     kind: str
@@ -21,22 +21,22 @@ class Lie:
 
     @property
     def shape(self) -> Float[np.ndarray, " L"]:
-        """What it adds, by epochs [m]."""
+        """The error that it adds, by epoch [m]."""
         return self.size * (np.arange(LASTS) if self.kind == "ramp" else np.ones(LASTS))
 
 
-LIES = (
-    *(Lie("step", size) for size in (5.0, 10.0, 15.0, 20.0, 30.0)),
-    *(Lie("ramp", size) for size in (0.1, 0.25, 0.5, 1.0, 2.0)),
+FAULTS = (
+    *(SatelliteFault("step", size) for size in (5.0, 10.0, 15.0, 20.0, 30.0)),
+    *(SatelliteFault("ramp", size) for size in (0.1, 0.25, 0.5, 1.0, 2.0)),
 )
 
 
-def trials(error: Float[np.ndarray, "N E S"], lie: Lie) -> Float[np.ndarray, "M E S"]:
-    """Every run with every satellite lying from every onset: M = N × onsets × S."""
+def trials(error: Float[np.ndarray, "N E S"], fault: SatelliteFault) -> Float[np.ndarray, "M E S"]:
+    """Every run with a fault of every satellite from every onset: M = N × onsets × S."""
     satellites = error.shape[2]
     every = np.repeat(error, len(ONSETS) * satellites, axis=0)
     for m, (onset, satellite) in enumerate(_who(len(error), satellites)):
-        every[m, onset : onset + LASTS, satellite] += lie.shape
+        every[m, onset : onset + LASTS, satellite] += fault.shape
     return every
 
 
@@ -45,11 +45,11 @@ def _who(runs: int, satellites: int) -> Sequence[tuple[int, int]]:
 
 
 def outcome(result: Flown, runs: int) -> list[dict[str, float]]:
-    """Of each run of errors, over satellites and onsets.
+    """Numbers of each run, over satellites and onsets.
 
-    `detection_rate`: share of the fault's epochs in which the satellite is flagged, `delay_s`: until that is first so,
-    at most the fault's length. `wrong_exclusions`: share of the epochs in which another one is flagged. `hrmse_m`: of
-    the horizontal position in the fault.
+    `detection_rate`: share of the fault's epochs in which the satellite is flagged. `delay_s`: until it is first
+    flagged, at most the fault's length. `wrong_exclusions`: share of the epochs in which another satellite is flagged.
+    `hrmse_m`: RMS horizontal position error during the fault.
     """
     who = _who(runs, result.flagged.shape[2])
     rows = []

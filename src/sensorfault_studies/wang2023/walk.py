@@ -1,4 +1,4 @@
-"""Experiment C, condition (d): raw measurements of a walk, real, with faults injected into single satellites."""
+"""Experiment C, condition (d): real raw measurements of a walk, with faults injected into single satellites."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -33,7 +33,7 @@ from sensorfault_studies.wang2023.navigated import Navigated, horizontal, many, 
 
 FOLDER, FILE = "gnss/f9p_walk0827", "gnss_1730.ubx"
 SYSTEMS = "GE"
-BEGUN_S, LEARNED_S = 5.0, 60.0  # the limit is of what is between, healthy; faults come later
+BEGUN_S, LEARNED_S = 5.0, 60.0  # the limit comes from the healthy time between these; faults come later
 ONSETS_S, LASTS_S = (65.0, 75.0, 85.0), 40.0
 FAULTS = (
     ("offset", 5.0),
@@ -41,10 +41,10 @@ FAULTS = (
     ("offset", 15.0),
     *(("drift", rate) for rate in (0.25, 0.5, 1.0)),
 )  # [m], [m/s]
-STEADY = 0.95  # share of the epochs in which a satellite was there
+STEADY = 0.95  # share of the epochs with a satellite
 FALSE_ALARMS = 1e-2
 MOST = 3
-# A walker: 0.7 m/s/√s without an inertial unit; the clock of an F9P is a TCXO. The rest is for inertial units.
+# A pedestrian: 0.7 m/s/√s without an inertial unit; the clock of an F9P is a TCXO. The rest is for inertial units.
 GRADE = Grade(*(jnp.asarray(x) for x in (0.1, 0.1, 1e-4, 1e-3, 0.1, 0.19, 0.01, 0.2, 0.7)))
 NOISE = ElevationNoise(*(jnp.asarray(x) for x in (1.4, 4.0, np.deg2rad(15.0), 1.0)))
 NONE = "no-exclusion"
@@ -54,17 +54,17 @@ METHODS = ("innovation-chi-square", "w-test", "leave-one-out")
 
 @dataclass(frozen=True)
 class Walk:
-    """T epochs of satellites that were heard nearly all along."""
+    """T epochs of the satellites that were received nearly all the time."""
 
     epochs: Log
     names: tuple[str, ...]
 
 
 def walk() -> Walk:
-    """134 s at 4 Hz, as the receiver wrote it.
+    """134 s at 4 Hz, as recorded by the receiver.
 
     Raises:
-        LogError: the real log is not there.
+        LogError: the real log does not exist.
     """
     return _walk(real(FOLDER))
 
@@ -79,10 +79,10 @@ def _walk(folder: Path) -> Walk:
 
 
 def injected(effort: Effort) -> Findings:
-    """Every satellite struck at three onsets; each method with a limit from the first minute.
+    """Faults on every satellite at three onsets; each method with a limit from the first minute.
 
     Raises:
-        LogError: the real log is not there.
+        LogError: the real log does not exist.
     """
     of = walk()
     numbers = Numbers("C", "f9p_walk", "injected")
@@ -94,24 +94,24 @@ def injected(effort: Effort) -> Findings:
     ]
     values = np.stack([inject(of.epochs, [fault], 0).log.value for fault, _ in cases])
     for k, method in enumerate((NONE, *METHODS)):
-        effort.tell(f"walk: {method}", k / (1 + len(METHODS)))
+        effort.progress(f"walk: {method}", k / (1 + len(METHODS)))
         monitor = watching(of, method, np.inf if method == NONE else learned(of, method))
-        healthy, lying = navigated(monitor, of.epochs), many(monitor, of.epochs, values)
+        healthy, faulty = navigated(monitor, of.epochs), many(monitor, of.epochs, values)
         if method != NONE:
             numbers.add(CONDITION, method, {"far": _alarms(of, healthy)})
-        refused = lying.tested & ~lying.taken
+        refused = faulty.tested & ~faulty.taken
         for i, (fault, satellite) in enumerate(cases):
             hit = (of.epochs.time >= fault.start_s) & (of.epochs.time < fault.end_s)
-            off = horizontal(lying.position[i, hit], healthy.position[hit])
-            result = {"hrmse_m": float(np.sqrt(np.mean(off**2)))}
+            off = horizontal(faulty.position[i, hit], healthy.position[hit])
+            measured = {"hrmse_m": float(np.sqrt(np.mean(off**2)))}
             if method != NONE:
-                result |= _found(refused[i, hit], satellite, of.epochs.time[hit] - fault.start_s)
-            numbers.add(CONDITION, method, result, fault.kind, fault.magnitude)
+                measured |= _found(refused[i, hit], satellite, of.epochs.time[hit] - fault.start_s)
+            numbers.add(CONDITION, method, measured, fault.kind, fault.magnitude)
     return Findings(tuple(numbers.rows()), (), (_remark(numbers),))
 
 
 def watching(of: Walk, method: str, limit: float) -> Monitor:
-    """The filter without an inertial unit, and one limit for all satellites."""
+    """The filter without an inertial unit, with one limit for all satellites."""
     slots = len(of.names)
     system = tuple(int(name[0] != "G") for name in of.names)
     wheel = jnp.asarray(0.1)  # there are none
@@ -122,7 +122,7 @@ def watching(of: Walk, method: str, limit: float) -> Monitor:
 
 
 def learned(of: Walk, method: str) -> float:
-    """The limit that one in a hundred epochs of the first minute passes, its first seconds left out."""
+    """The limit that one in a hundred epochs of the first minute exceeds, without its first seconds."""
     run = replay_log(watching(of, method, np.inf), of.epochs)
     first = (of.epochs.time >= BEGUN_S) & (of.epochs.time < LEARNED_S)
     score = np.asarray(run.scores[0])[first]
@@ -130,13 +130,13 @@ def learned(of: Walk, method: str) -> float:
 
 
 def _alarms(of: Walk, healthy: Navigated) -> float:
-    """Share of the later epochs, untouched, in which some satellite is refused."""
+    """Share of the later epochs without faults in which a satellite is rejected."""
     later = of.epochs.time >= LEARNED_S
     return float((healthy.tested & ~healthy.taken)[later].any(axis=1).mean())
 
 
 def _found(refused: Bool[np.ndarray, "n S"], satellite: int, since: Float[np.ndarray, " n"]) -> dict[str, float]:
-    """Of the epochs of a fault: share in which it was refused, in which others were, and when first, or never."""
+    """During a fault: share of epochs in which it was rejected, in which others were, and the delay."""
     mine = refused[:, satellite]
     others = np.delete(refused, satellite, axis=1).any(axis=1)
     return {
@@ -149,7 +149,7 @@ def _found(refused: Bool[np.ndarray, "n S"], satellite: int, since: Float[np.nda
 def _remark(numbers: Numbers) -> str:
     rates = ", ".join(f"{method} {numbers.mean(CONDITION, method, 'far'):.1%}" for method in METHODS)
     return (
-        f"Walk: a limit learned from one healthy minute is one of few epochs that resemble each other; in the next it "
-        f"raises false alarms in {rates} of the epochs where one in a hundred was asked for, so the methods are not "
-        f"compared here. Errors are beside the same filter without a fault, as the air alone moves it by metres."
+        f"Walk: one healthy minute has few epochs, and these resemble each other. In the next minute its limit raises "
+        f"false alarms in {rates} of the epochs instead of the designed 1 %, so the methods cannot be compared here. "
+        f"Errors are relative to the same filter without a fault, because the atmosphere alone shifts it by metres."
     )

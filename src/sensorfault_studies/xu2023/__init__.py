@@ -1,1 +1,1 @@
-"""Xu et al. 2023 reproduced: a follower, two leaders, and ranges that lie."""
+"""Xu et al. 2023: a follower, two leaders, and faulty ranges."""

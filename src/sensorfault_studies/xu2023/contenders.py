@@ -22,7 +22,7 @@ from sensorfault.vehicles.underwater import FollowerRoles
 from sensorfault_studies.xu2023.scenario import TRAINED_S, Scenario
 
 POOLED = Setting(log=True, epochs=20)  # chosen on development missions; the paper's own is the default
-ALONE, TOGETHER, TOLD = "one-mission", "pooled", "told-noise"
+ALONE, POOL_OF_MISSIONS, GIVEN = "one-mission", "pooled", "given-noise"
 AGAINST = "chi-square-ckf-05"
 RIVAL = "chi-square-ackf-01"
 
@@ -31,7 +31,7 @@ Make = Callable[[Scenario], Monitor]
 
 @dataclass(frozen=True)
 class Contender:
-    """A method in a variant (`words`); `make` gives its monitor of a mission, learned from that before it is judged."""
+    """A method in a variant (`words`); `make` fits its monitor on the training part of a mission."""
 
     name: str
     words: str
@@ -39,13 +39,13 @@ class Contender:
 
 
 def early(case: Scenario) -> Lesson:
-    """The part that is learned from, with GPS' word on every range."""
+    """The training part, with the error of every range from GPS."""
     rows = case.log.time < TRAINED_S
     return Lesson(case.log.between(end_s=TRAINED_S), case.error[rows])
 
 
 def contenders(q: float, sigma_m: float, pool: Sequence[Scenario]) -> tuple[Contender, ...]:
-    """All of them under this process noise [m²/s] and range noise [m]; what is pooled is learned from `pool`."""
+    """All methods with this process noise [m²/s] and range noise [m]; the pooled ones are trained on `pool`."""
     plain, adaptive = Filter(q, sigma_m, adaptive=False), Filter(q, sigma_m)
     log = pool[0].log
     found = followed("xu2023", log)
@@ -68,12 +68,12 @@ def contenders(q: float, sigma_m: float, pool: Sequence[Scenario]) -> tuple[Cont
     return (
         *gates,
         Contender("repeats-or-chi-square", "", lambda case: _with_repeats(case, found, adaptive)),
-        Contender("double-threshold", TOGETHER, lambda case: trained),
+        Contender("double-threshold", POOL_OF_MISSIONS, lambda case: trained),
         Contender("anfis-cubature", ALONE, lambda case: own(case, True)),
         Contender("anfis-cubature-9m", ALONE, lambda case: own(case, False)),
-        Contender("anfis-cubature-9m", TOGETHER, lambda case: rules),
-        Contender("logistic-cubature", TOGETHER, lambda case: odds),
-        Contender("cooperative", TOLD, lambda case: cooperative("cooperative", early(case).log, whole).monitor),
+        Contender("anfis-cubature-9m", POOL_OF_MISSIONS, lambda case: rules),
+        Contender("logistic-cubature", POOL_OF_MISSIONS, lambda case: odds),
+        Contender("cooperative", GIVEN, lambda case: cooperative("cooperative", early(case).log, whole).monitor),
         Contender("cooperative", "", lambda case: cooperative("cooperative", early(case).log).monitor),
         Contender("ungated-ackf", "", lambda case: monitor(case.log, cubature(case.log, found, adaptive))),
     )
@@ -84,14 +84,14 @@ def _gate(filter: Filter, far: float) -> Make:
 
 
 def _with_repeats(case: Scenario, found: FollowerRoles, filter: Filter) -> Monitor:
-    """The χ² gate at .01, or one exact repeat."""
+    """The χ² gate at 0.01, or one exact repeat."""
     gate = chi_square("chi-square", early(case).log, 0.01, filter).monitor
     repeats = Branch(Repeats(len(case.log.channels)), on_ranges(case.log, found, 0.5), certain=True)
     return replace(gate, branches=(*gate.branches, repeats))
 
 
 def eased(of: Monitor, times: float) -> Monitor:
-    """The monitor with the limit of its first test so many times as high; log odds by as much on their own scale."""
+    """The monitor with the limit of its first test multiplied by a factor; log odds are shifted on their own scale."""
 
     def easier(limit: object) -> object:
         now = jnp.asarray(limit)

@@ -1,4 +1,4 @@
-"""Figures 13 to 19 of the paper in our form: what is flagged, how well, and where the follower believes to be."""
+"""Figures 13 to 19 of the paper: flagged ranges, scores, and the position error of the follower."""
 
 from collections.abc import Sequence
 
@@ -6,26 +6,26 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault_studies.findings import Figure, Json
-from sensorfault_studies.xu2023.contenders import TOGETHER
+from sensorfault_studies.xu2023.contenders import POOL_OF_MISSIONS
 from sensorfault_studies.xu2023.missions import Result
 from sensorfault_studies.xu2023.run import Flown
 from sensorfault_studies.xu2023.scenario import TRAINED_S, WRONG_M, Scenario
 
-RULES = f"anfis-cubature-9m {TOGETHER}"
-SHOWN = ("chi-square-ckf-05", "chi-square-ackf-01", f"double-threshold {TOGETHER}", RULES, "cooperative")
+RULES = f"anfis-cubature-9m {POOL_OF_MISSIONS}"
+SHOWN = ("chi-square-ckf-05", "chi-square-ackf-01", f"double-threshold {POOL_OF_MISSIONS}", RULES, "cooperative")
 METRICS = ("accuracy", "precision", "recall", "fpr", "fnr")
 SHARES = np.linspace(0.5, 99.5, 100)
 
 
 def of_missions(result: Result) -> tuple[Figure, ...]:
-    """Of one condition."""
+    """The figures of one condition."""
     key = f"e_{result.condition.data}_{result.condition.words.lower().replace('.', '')}"
     where = f"{result.condition.data}, {result.condition.words}"
     return (
         *(_flags(f"{key}_flags{j + 1}", f"{where}: ranges to leader {j + 1}", result, j) for j in range(2)),
-        _bars(f"{key}_scores", f"{where}: how well anomalies are told", result),
-        _way(f"{key}_position", f"{where}: error of the position", result),
-        _shares(f"{key}_cdf", f"{where}: error of the position, its distribution", result),
+        _bars(f"{key}_scores", f"{where}: detection of anomalies", result),
+        _way(f"{key}_position", f"{where}: position error", result),
+        _shares(f"{key}_cdf", f"{where}: distribution of the position error", result),
     )
 
 
@@ -46,8 +46,8 @@ def _flags(name: str, title: str, result: Result, j: int) -> Figure:
         "height": 420,
     }
     caption = (
-        f"The paper's figures 13 to 15 on the first mission: an error above {WRONG_M:g} m is an anomaly; below the "
-        "axis, what each method flags."
+        f"The paper's figures 13 to 15 on the first mission: an error above {WRONG_M:g} m is an anomaly; marks below "
+        "the axis: ranges flagged by each method."
     )
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
@@ -67,7 +67,7 @@ def _bars(name: str, title: str, result: Result) -> Figure:
         condition = f"{result.condition.words} {words}".strip() + " as-printed"
         shares = [result.numbers.mean(condition, plain, metric) for metric in METRICS]
         data.append({"type": "bar", "name": method, "x": list(METRICS), "y": [round(share, 4) for share in shares]})
-    caption = "The paper's figure 16; means over the missions, limits as each method sets them."
+    caption = "The paper's figure 16: means over the missions, with each method's own limits."
     layout: Json = {"barmode": "group", "yaxis": {"range": [0, 1]}}
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
@@ -90,7 +90,7 @@ def _way(name: str, title: str, result: Result) -> Figure:
         "yaxis": {"title": {"text": "error of the position [m]"}},
         "shapes": [learned | {"line": {"dash": "dash"}}],
     }
-    caption = "The paper's figures 17 and 18 on the first mission; judged is what comes after the dashed line."
+    caption = "The paper's figures 17 and 18 on the first mission; the test part begins at the dashed line."
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
 
@@ -104,7 +104,7 @@ def _shares(name: str, title: str, result: Result) -> Figure:
         "xaxis": {"title": {"text": "error of the position [m]"}, "type": "log"},
         "yaxis": {"title": {"text": "share of the time"}},
     }
-    return Figure(name, title, "The paper's figure 19, all missions together.", {"data": data, "layout": layout})
+    return Figure(name, title, "The paper's figure 19, over all missions.", {"data": data, "layout": layout})
 
 
 def _short(x: Float[np.ndarray, " n"] | Sequence[float]) -> list[float]:

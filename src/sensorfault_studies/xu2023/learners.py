@@ -1,4 +1,4 @@
-"""What can be learned of a range's error from its innovation: rules begun and trained in several ways, and odds."""
+"""Learning a range's error from its innovation: rules, trained in several ways, and logistic regression."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -33,7 +33,7 @@ Fit = Callable[[Labelled], Answer]
 
 
 def learners(wrong_m: float, of: Sequence[str] = tuple(SETTINGS)) -> dict[tuple[str, str], Fit]:
-    """By method and variant. Each answers by how much a range is over its limit: foretold metres, or log odds."""
+    """By method and variant; the answer is by how much a range exceeds its limit: predicted metres, or log odds."""
     rules = {(ANFIS, name): partial(_rules, SETTINGS[name], wrong_m) for name in of}
     return {**rules, (LOGISTIC, ""): partial(_odds, wrong_m)}
 
@@ -49,7 +49,7 @@ def _odds(wrong_m: float, seen: Labelled) -> Answer:
 
 
 def judged(wrong_m: float, over: Float[np.ndarray, " M"], size: Float[np.ndarray, " M"]) -> dict[str, float]:
-    """Xu et al. 2023, (36), (38), (39), and the area under the ROC; NaN where there is nothing to find, or all is.
+    """Xu et al. 2023, (36), (38), (39), and the area under the ROC; NaN if all ranges are of one class.
 
     `over`: beyond the limit if above 0; `size` of the true errors [m].
     """
@@ -64,7 +64,7 @@ def judged(wrong_m: float, over: Float[np.ndarray, " M"], size: Float[np.ndarray
 
 
 def compared(numbers: Numbers, condition: str, learn: Labelled, test: Labelled, wrong_m: float) -> None:
-    """Every way to begin and train the rules, learned from the same rows and judged on the same."""
+    """Every way to initialise and train the rules, on the same training and test rows."""
     for (method, variant), fit in learners(wrong_m).items():
         answer = fit(learn)
         over = answer(test.features)
@@ -83,7 +83,7 @@ def curves(
     sizes: Sequence[int] = SIZES,
     draws: int = 5,
 ) -> None:
-    """Learning curves; the number of rows is the condition's last word, and what they are drawn from stays the same."""
+    """Learning curves; the number of rows is the last word of the condition."""
     for (method, variant), fit in learners(wrong_m, CURVES).items():
         for size, result in learning_curve(fit, partial(judged, wrong_m), learn, test, sizes, draws):
             words = [condition, variant, f"n{size}"]

@@ -1,4 +1,4 @@
-"""Figures of what was learned: memberships, the surface, features, and how much there must be to learn from."""
+"""Figures of the learned rules: memberships, surfaces, features and learning curves."""
 
 from collections.abc import Sequence
 
@@ -12,9 +12,9 @@ from sensorfault.training.labelled import Labelled
 from sensorfault_studies.findings import Figure, Json, Row
 
 SYMBOLS = ("|r|", "M²", "R*")
-LOGARITHMS = {"M²": (-2, 3), "R*": (0.8, 3.8)}  # powers of ten that are shown
+LOGARITHMS = {"M²": (-2, 3), "R*": (0.8, 3.8)}  # range of the axis in powers of ten
 PAIRS = ((0, 1), (0, 2), (1, 2))
-CORNER = (-1.6, -1.6, 1.0)  # from where most of what was learned from is in front
+CORNER = (-1.6, -1.6, 1.0)  # viewpoint with most of the training points in front
 FINE = 31  # points along each side of a surface
 COLORS = ("#2a6fb0", "#c0562f", "#3d8a4d", "#8a5fa8")
 
@@ -35,12 +35,12 @@ def memberships(name: str, title: str, before: Anfis, after: Anfis) -> Figure:
     for dash, word in (("dot", "before training"), ("solid", "after training")):
         data.append(_line(word, x[:1], x[:1] * np.nan) | {"line": {"dash": dash, "color": COLORS[0]}})
     layout: Json = {"yaxis": {"title": {"text": "membership"}, "range": [0, 1.03]}} | _beside("xaxis")
-    caption = "The paper's figure 11; features are scaled by the extremes of the training."
+    caption = "The paper's figure 11; features are scaled by the training range."
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
 
 def surface(name: str, title: str, model: Anfis, seen: Labelled) -> Figure:
-    """The paper's figure 12: the error foretold over two scaled features, the third at its median of the training."""
+    """The paper's figure 12: predicted error over two scaled features, the third at its training median."""
     result = jax.tree.map(np.asarray, model)
     unit = result.unit
     rows, side = np.asarray(unit(seen.features)), np.linspace(0, 1, FINE)
@@ -72,8 +72,8 @@ def surface(name: str, title: str, model: Anfis, seen: Labelled) -> Figure:
             "camera": {"eye": dict(zip("xyz", CORNER, strict=True))},
         }
     caption = (
-        "The paper's figure 12, with what was learned from as points. R* is R max(1, M²), and M² grows with |r|, so "
-        "they lie near one line; away from it the surface says what nobody has seen."
+        "The paper's figure 12; points: training data. R* is R max(1, M²), and M² grows with |r|, so the points lie "
+        "near one line; away from it the surface is extrapolated."
     )
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
@@ -86,7 +86,7 @@ def features(
     plain: Float[np.ndarray, "N 3"],
     adaptive: Float[np.ndarray, "N 3"],
 ) -> Figure:
-    """The paper's figure 10: |error| and the features of its innovation, in a filter as it is and in an adaptive one.
+    """The paper's figure 10: |error| and the features of its innovation, in the plain and in the adaptive filter.
 
     `error` [m]; features as numerics/innovation.py has them, of the same ranges.
     """
@@ -101,12 +101,12 @@ def features(
         domain = [0.69 - 0.345 * i, 1.0 - 0.345 * i]
         unit = " [m]" if i == 0 else " [m²]" if i == 2 else ""
         layout[f"yaxis{axis}"] = {"title": {"text": symbol + unit}, "domain": domain} | scale
-    caption = "The paper's figure 10: once a fault is over, the adaptive filter's innovations are soon small again."
+    caption = "The paper's figure 10: after a fault the innovations of the adaptive filter are soon small again."
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
 
 def learning(name: str, title: str, rows: Sequence[Row], metric: str = "accuracy") -> Figure:
-    """What more rows add, a line a method; of rows whose condition ends in n25, n50, and so on."""
+    """Learning curves, one line for each method, from rows whose condition ends in n25, n50, and so on."""
     mine = [row for row in rows if row.metric == metric and _rows_of(row)]
     sizes = sorted({_rows_of(row) for row in mine})
     data: list[Json] = []
@@ -118,12 +118,10 @@ def learning(name: str, title: str, rows: Sequence[Row], metric: str = "accuracy
         bars: Json = {"type": "data", "array": [round(row.spread or 0.0, 4) for row in of]}
         data.append(line | {"mode": "lines+markers", "error_y": bars})
     layout: Json = {
-        "xaxis": {"title": {"text": "ranges to learn from"}, "type": "log"} | {"tickvals": sizes, "ticktext": sizes},
+        "xaxis": {"title": {"text": "training ranges"}, "type": "log"} | {"tickvals": sizes, "ticktext": sizes},
         "yaxis": {"title": {"text": metric}},
     }
-    caption = (
-        "Parts of the training drawn by chance, judged on the same ranges; bars: standard deviation over the draws."
-    )
+    caption = "Random parts of the training data, tested on the same ranges; bars: standard deviation over the draws."
     return Figure(name, title, caption, {"data": data, "layout": layout})
 
 
@@ -137,7 +135,7 @@ def _variant(row: Row) -> str:
 
 
 def _beside(axis: str) -> Json:
-    """Three axes side by side, one a feature."""
+    """Three axes side by side, one for each feature."""
     return {
         f"{axis}{i + 1 if i else ''}": {"title": {"text": FEATURES[i]}, "domain": [i / 3, (i + 0.9) / 3]}
         for i in range(len(FEATURES))

@@ -1,4 +1,4 @@
-"""Every method on every mission, under the conditions of the study."""
+"""Every method on every mission, for all conditions of the study."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -17,16 +17,16 @@ from sensorfault_studies.xu2023.run import Flown, lockout_s, scores, table, thro
 from sensorfault_studies.xu2023.scenario import FAST, RANGING, Scenario, error, scenario
 
 EXPERIMENT = "E"
-MISSIONS, FEW = 24, 4  # judged; with --quick
-FIRST, POOL, POOLED = 1000, 300, 8  # seed of the first mission judged; of the first learned from, and how many
-MATCHED = 0.02  # share of healthy ranges flagged on the pooled missions, for the comparison at one rate
-STEPS = np.geomspace(0.5, 4.0, 19)  # of the limits, to find it
-FROZEN_S = (800.0, 200.0)  # both leaders, to see whether the filter comes back
+MISSIONS, FEW = 24, 4  # test missions; with --quick
+FIRST, POOL, POOLED = 1000, 300, 8  # first seed of the test missions; first seed and number of the training missions
+MATCHED = 0.02  # false alarm rate on the pooled missions, for the comparison at a common rate
+STEPS = np.geomspace(0.5, 4.0, 19)  # factors of the limits that are tried for it
+FROZEN_S = (800.0, 200.0)  # start and length of the fault of both leaders in the test of recovery [s]
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Missions of one kind, and what the filters take for their noise."""
+    """Missions of one kind, and the noise that the filters assume."""
 
     words: str
     data: str
@@ -46,7 +46,7 @@ CONDITIONS = (
 
 @dataclass(frozen=True)
 class Result:
-    """The numbers of one condition; `shown`: the first mission, and each method's run of it, printed limits."""
+    """The numbers of one condition; `shown`: each method's run of the first mission, with published limits."""
 
     condition: Condition
     numbers: Numbers
@@ -57,7 +57,7 @@ class Result:
 
 
 def judged(condition: Condition, effort: Effort) -> Result:
-    """All methods, as they come and with limits eased or tightened to one rate of false alarms."""
+    """All methods, with their own limits and with limits for a common false alarm rate."""
     many = FEW if effort.quick else max(MISSIONS, effort.seeds)
     pool = [condition.make(POOL + k) for k in range(POOLED)]
     cases = [condition.make(FIRST + k) for k in range(many)]
@@ -70,7 +70,7 @@ def judged(condition: Condition, effort: Effort) -> Result:
     for k, one in enumerate(every):
         name = f"{one.name} {one.words}".strip()
         words = f"{condition.words} {one.words}".strip()
-        effort.tell(f"{condition.data} {condition.words}: {name}", k / len(every))
+        effort.progress(f"{condition.data} {condition.words}: {name}", k / len(every))
         flown = [through(one.make(case), case) for case in cases]
         tables = np.array([table(run.flagged, case) for run, case in zip(flown, cases, strict=True)])
         gated = one.name != "ungated-ackf"
@@ -99,7 +99,7 @@ def judged(condition: Condition, effort: Effort) -> Result:
 
 
 def _matched(one: Contender, pool: Sequence[Scenario]) -> float:
-    """The least factor of the limit with which so few healthy ranges of the pooled missions are flagged."""
+    """The smallest factor of the limit that keeps the false alarm rate of the pooled missions below MATCHED."""
     monitors = [one.make(case) for case in pool]
     for times in STEPS:
         runs = [through(eased(m, times), case) for m, case in zip(monitors, pool, strict=True)]
@@ -110,7 +110,7 @@ def _matched(one: Contender, pool: Sequence[Scenario]) -> float:
 
 
 def _both_frozen(seed: int) -> Scenario:
-    """A mission on which nothing is wrong but that both leaders freeze for long."""
+    """A healthy mission except that both leaders freeze for a long time."""
     mission = sail(1700.0, seed, replace(RANGING))
     done = inject(mission.log, [Fault("frozen", f"leader{j}", "range", *FROZEN_S) for j in (1, 2)], seed)
     return Scenario(done.log, error(done.log, mission.truth), mission.truth.value[:, :2], done.truth)

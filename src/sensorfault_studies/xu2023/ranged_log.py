@@ -1,4 +1,4 @@
-"""A log of ranges to beacons that stay where they are, with what else a vehicle says of itself."""
+"""A log of ranges to fixed beacons, with the vehicle's own channels."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ from sensorfault.logs.table import Channel, Log, Sensor
 
 START = (Channel("north", "start", "m", watch=False), Channel("east", "start", "m", watch=False))
 TAG = Channel("depth", "tag", "m", watch=False)
-TOLD = ("north", "east", "depth")  # of a beacon [m]
+PLACE = ("north", "east", "depth")  # channels of a beacon's position [m]
 
 
 def ranged_log(
@@ -19,15 +19,15 @@ def ranged_log(
     ranges: Mapping[str, Float[np.ndarray, " T"]],
     beacons: Float[np.ndarray, "L 3"] | None = None,
 ) -> Log:
-    """Own channels in their units, then of each beacon its range [m] and where it is, if given: north, east, down [m].
+    """Own channels in their units; for each beacon its range [m] and, if given, its position: north, east, down [m].
 
-    NaN where nothing came; what is there is new.
+    NaN where there is no value; every value is new.
     """
     channels, columns = list(own), list(own.values())
     for j, (beacon, range_m) in enumerate(ranges.items()):
         channels.append(Channel("range", beacon, "m"))
         columns.append(range_m)
-        for what, at in zip(TOLD, [] if beacons is None else beacons[j], strict=beacons is not None):
+        for what, at in zip(PLACE, [] if beacons is None else beacons[j], strict=beacons is not None):
             channels.append(Channel(what, beacon, "m", watch=False))
             columns.append(np.full(len(time), at))
     value = np.column_stack(columns)
@@ -37,7 +37,7 @@ def ranged_log(
 def _sensors(
     channels: list[Channel], value: Float[np.ndarray, "T C"], time: Float[np.ndarray, " T"]
 ) -> tuple[Sensor, ...]:
-    """Each with the usual time between two values of its first channel."""
+    """The sensors; the period is the median time between two values of the first channel."""
     first = {channel.sensor: column for channel, column in reversed(list(zip(channels, value.T, strict=True)))}
     return tuple(
         Sensor(name, _period(time[np.isfinite(first[name])])) for name in dict.fromkeys(c.sensor for c in channels)

@@ -1,4 +1,4 @@
-"""Ranges that real beacons said: radio among walkers, sound under water, barcodes on a floor."""
+"""Ranges of real beacons: radio among pedestrians, sound under water, barcodes on a floor."""
 
 import numpy as np
 from jaxtyping import Bool
@@ -11,24 +11,24 @@ from sensorfault_studies.xu2023.ranging_remarks import of_dive, of_robots, of_wa
 from sensorfault_studies.xu2023.rovers import METHODS, struck, watched
 from sensorfault_studies.xu2023.run import through
 
-ROWS = 256  # rows are compiled for in steps of so many
+ROWS = 256  # the number of rows is rounded up to a multiple of this, to save compilations
 
 
 def findings(effort: Effort) -> Findings:
-    """All three.
+    """All three data sets.
 
     Raises:
         LogError: one of them is not there.
     """
     made = []
     for k, (doing, one) in enumerate((("walkers", _walks), ("a dive", _dive), ("robots", _robots))):
-        effort.tell(f"real ranges: {doing}", k / 3)
+        effort.progress(f"real ranges: {doing}", k / 3)
         made.append(one(effort))
     return sum(made[1:], made[0])
 
 
 def _walks(effort: Effort) -> Findings:
-    """The first walk of each trajectory with `quick`."""
+    """All walks; with `quick` the first of each trajectory."""
     numbers = Numbers("E-ranging", "uwb_outdoor", "real")
     every = [
         following(f"walk-{walk.name}", walks.scenario(walk)) for walk in walks.walks()[:: 2 if effort.quick else 1]
@@ -38,21 +38,21 @@ def _walks(effort: Effort) -> Findings:
 
 
 def _robots(effort: Effort) -> Findings:
-    """Two of five with `quick`."""
+    """Five robots; with `quick` two."""
     every = [watched(robot) for robot in robots.ROBOTS[: 2 if effort.quick else None]]
     gated = [method for method in METHODS if not method.startswith("ungated")]
     factors = {method: matching(method, every, _rows(every)) for method in gated}
     real, injected = Numbers("E-ranging", "mrclam", "real"), Numbers("E-ranging", "mrclam", "injected")
     compared(real, FITTED, every, dict.fromkeys(METHODS, 1.0), _rows(every))
     compared(real, MATCHED, every, factors, _rows(every))
-    lying = [struck(one, seed=1) for one in every]
-    compared(injected, MATCHED, lying, {"ungated-ackf": 1.0} | factors, _rows(every))
+    faulty = [struck(one, seed=1) for one in every]
+    compared(injected, MATCHED, faulty, {"ungated-ackf": 1.0} | factors, _rows(every))
     rows = (*real.rows(), *injected.rows())
     return Findings(rows, (), (of_robots(real, injected),))
 
 
 def _dive(effort: Effort) -> Findings:
-    """No truth: which ranges are refused, by what the file itself says of them."""
+    """No truth: which ranges are rejected, by group of the file's own quality values."""
     of = receivers.dive()
     places = receivers.placed(of)
     one = following("dive", receivers.scenario(of, places))

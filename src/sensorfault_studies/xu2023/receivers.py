@@ -1,4 +1,4 @@
-"""Real sound under water: a diving robot's beacon, heard by four receivers whose places nobody wrote down."""
+"""Real sound under water: a diving robot's beacon and four receivers at unrecorded positions."""
 
 from typing import NamedTuple
 
@@ -12,13 +12,13 @@ from sensorfault_studies.xu2023.ranged_log import START, TAG, ranged_log
 from sensorfault_studies.xu2023.scenario import Scenario
 
 LEARNED = 1 / 2
-WILD_M = 0.1  # errors beyond this hardly count while the receivers are placed
-IMPOSSIBLE_M = 0.5  # by so much two ranges differ more than their receivers are apart
+WILD_M = 0.1  # larger errors hardly count in the fit of the receivers' positions [m]
+IMPOSSIBLE_M = 0.5  # two ranges may differ by this more than the distance of their receivers [m]
 
 
 class Dive(NamedTuple):
-    """Of each round of ranges: time [s], ranges [m], NaN where none came; the device's own x, y and down [m] and
-    whether it stands by them; signal over noise of each receiver [dB].
+    """For each round of ranges: time [s], ranges [m], NaN if missing; the device's own x, y and down [m] and
+    whether it marks them valid; signal-to-noise ratio of each receiver [dB].
     """
 
     time: Float[np.ndarray, " T"]
@@ -29,12 +29,12 @@ class Dive(NamedTuple):
 
     @property
     def early(self) -> Bool[np.ndarray, " T"]:
-        """The rounds that are learned from."""
+        """The rounds of the training part."""
         return np.asarray(self.time < LEARNED * self.time[-1])
 
 
 def dive() -> Dive:
-    """The rounds in which a range was new; the file repeats the last until the next.
+    """The rounds with a new range; the file repeats the last range until the next.
 
     Raises:
         LogError: it is not there.
@@ -58,7 +58,7 @@ def _four(result: pl.DataFrame, what: str) -> Float[np.ndarray, "T 4"]:
 
 
 def placed(of: Dive) -> Float[np.ndarray, "4 3"]:
-    """Where the receivers are: what the ranges and the device's positions of the first half agree on best [m]."""
+    """Positions of the receivers, fitted to the ranges and the device's positions in the first half [m]."""
     rows = of.early & of.solved
     ranges, position = of.range[rows], of.position[rows]
 
@@ -70,7 +70,7 @@ def placed(of: Dive) -> Float[np.ndarray, "4 3"]:
 
 
 def scenario(of: Dive, receivers: Float[np.ndarray, "4 3"]) -> Scenario:
-    """Begins where the device says, and is told the depth. `error` and `position` are by the device: no truth."""
+    """Starts at the device's position, with known depth. `error` and `position` come from the device: no truth."""
     first = np.where(np.arange(len(of.time))[:, None] == 0, of.position, np.nan)
     own = {START[0]: first[:, 0], START[1]: first[:, 1], TAG: of.position[:, 2]}
     ranges = {f"receiver{j}": of.range[:, j] for j in range(4)}
@@ -85,7 +85,7 @@ def scenario(of: Dive, receivers: Float[np.ndarray, "4 3"]) -> Scenario:
 
 
 def impossible(of: Dive, receivers: Float[np.ndarray, "4 3"]) -> Bool[np.ndarray, "T 4"]:
-    """Ranges that cannot be right if any two of the others are: |d_i - d_j| ≤ |p_i - p_j| fails against two."""
+    """Ranges that violate |d_i - d_j| ≤ |p_i - p_j| with two others, so they cannot be right if those are."""
     apart = np.linalg.norm(receivers[:, None] - receivers, axis=2)
     differ = np.abs(of.range[:, :, None] - of.range[:, None])
     return np.asarray((differ > apart + IMPOSSIBLE_M).sum(axis=2) >= 2)

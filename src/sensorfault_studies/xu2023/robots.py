@@ -1,4 +1,4 @@
-"""Five real robots on a floor of fifteen landmarks: how far away each seems, and a camera room for truth."""
+"""Five real robots on a floor with fifteen landmarks: ranges to them, and truth from a camera system."""
 
 from functools import cache
 from pathlib import Path
@@ -14,8 +14,8 @@ from sensorfault_studies.xu2023.scenario import Scenario
 from sensorfault_studies.xu2023.walks import WRONG, robust_sd
 
 ROBOTS = (1, 2, 3, 4, 5)
-FIRST_LANDMARK = 6  # subjects before are robots
-SLOWEST_S = 1.0  # between two ticks
+FIRST_LANDMARK = 6  # smaller subject numbers are robots
+SLOWEST_S = 1.0  # longest time between two ticks [s]
 WINDOW_S = 10.0
 LEARNED = 1 / 3
 ODOMETRY = (Channel("forward", "wheels", "m/s", watch=False), Channel("turn", "wheels", "rad/s", watch=False))
@@ -29,12 +29,12 @@ def _table(name: str) -> Float[np.ndarray, "N c"]:
 
 @cache
 def landmarks() -> Float[np.ndarray, "L 2"]:
-    """Where they are: x and y [m]."""
+    """Positions of the landmarks: x and y [m]."""
     return _table("Landmark_Groundtruth")[:, 1:3]
 
 
 class Run(NamedTuple):
-    """`sigma_m` of all ranges, robust, and `q` [rad²/s] of reckoned headings, both by the truth of the first third."""
+    """Robust `sigma_m` of all ranges and `q` [rad²/s] of the heading, both from the truth of the first third."""
 
     case: Scenario
     sigma_m: float
@@ -43,9 +43,9 @@ class Run(NamedTuple):
 
 @cache
 def run(robot: int) -> Run:
-    """A tick a round of ranges, and at least one a second; north and east stand for the file's x and y.
+    """One tick for each round of ranges, and at least one a second; north and east are the file's x and y.
 
-    Begins at the true pose and the first odometry. An error is what a range says beyond the true distance.
+    Starts at the true pose and the first odometry. An error is range minus true distance.
     """
     odometry, truth, received = (_table(f"Robot{robot}_{what}") for what in ("Odometry", "Groundtruth", "Measurement"))
     zero, last = max(odometry[0, 0], truth[0, 0]), min(odometry[-1, 0], truth[-1, 0])
@@ -76,7 +76,7 @@ def run(robot: int) -> Run:
 
 
 def _strays(time: Float[np.ndarray, " n"], off: Float[np.ndarray, " n"]) -> float:
-    """The variance that a second adds to what is reckoned, over WINDOW_S."""
+    """The variance that a second of dead reckoning adds, measured over WINDOW_S."""
     at = np.arange(time[0], time[-1], WINDOW_S)
     return float(np.mean(np.diff(np.interp(at, time, off)) ** 2) / WINDOW_S)
 
@@ -88,7 +88,7 @@ def _true(truth: Float[np.ndarray, "N 4"], at: Float[np.ndarray, " n"]) -> Float
 def _begun(
     time: Float[np.ndarray, " T"], at: Float[np.ndarray, "T 2"], truth: Float[np.ndarray, "N 4"], zero: float
 ) -> dict[Channel, Float[np.ndarray, " T"]]:
-    """The pose at the first tick, and no more."""
+    """The pose at the first tick only."""
     pose = [*at[0], truth[np.searchsorted(truth[:, 0], zero), 3]]
     return {c: np.where(np.arange(len(time)) == 0, x, np.nan) for c, x in zip((*START, HEADING), pose, strict=True)}
 
@@ -96,7 +96,7 @@ def _begun(
 def _reckoned(
     time: Float[np.ndarray, " T"], odometry: Float[np.ndarray, "N 3"], zero: float
 ) -> dict[Channel, Float[np.ndarray, " T"]]:
-    """Velocity and turn rate, each the mean since the tick before; a row stands until the next."""
+    """Velocity and turn rate, each the mean since the last tick; a row is valid until the next."""
     at, since = odometry[:, 0] - zero, np.diff(time, prepend=time[0] - 1.0)
     way = [np.concatenate([[0.0], np.cumsum(rate[:-1] * np.diff(at))]) for rate in odometry[:, 1:].T]
     return {c: np.diff(np.interp(time, at, w), prepend=0.0) / since for c, w in zip(ODOMETRY, way, strict=True)}

@@ -1,4 +1,4 @@
-"""The real robots through the gates, as they are and with landmarks whose ranges freeze or drift."""
+"""The gates on the real robots, as recorded and with frozen or drifting ranges to landmarks."""
 
 from dataclasses import replace
 from functools import partial
@@ -18,15 +18,15 @@ from sensorfault_studies.xu2023.gates import Watched, early, watching
 from sensorfault_studies.xu2023.robots import landmarks, run
 
 METHODS = ("ungated-ackf", "chi-square-ackf-01", "cooperative")
-FIRST = (0.05, 0.05, 0.05)  # standard deviations of the pose it begins at [m], [m], [rad]
-LASTS_S, APART_S = 60.0, 20.0  # a fault, and the time until the next
-STALE_S = 10.0  # out of sight for so long
-FEWEST = 10  # ranges of a landmark while it lies
+FIRST = (0.05, 0.05, 0.05)  # standard deviations of the initial pose [m], [m], [rad]
+LASTS_S, APART_S = 60.0, 20.0  # length of a fault, and time until the next [s]
+STALE_S = 10.0  # a landmark not seen for this long is out of sight [s]
+FEWEST = 10  # ranges of a landmark during its fault, at least
 DRIFT = 0.05  # [m/s]
 
 
 def watched(robot: int) -> Watched:
-    """A robot, on the noise that the truth of its own first third says."""
+    """A robot with the noise from the truth of its first third."""
     own = run(robot)
     log = early(own.case)
     leaders = tuple(Leader(i, ()) for i, channel in enumerate(log.channels) if channel.name == "range")
@@ -35,7 +35,7 @@ def watched(robot: int) -> Watched:
 
 
 def _cubature(log: Log, filter: Filter) -> Cubature:
-    """`q` [rad²/s] of the heading is added to the position too [m²/s]: as if the wheels slipped a metre apart."""
+    """`q` [rad²/s] of the heading is also added to the position [m²/s], as for slip of wheels one metre apart."""
     ranges = tuple(i for i, channel in enumerate(log.channels) if channel.name == "range")
     return Cubature(
         vehicle=Rover(
@@ -57,7 +57,7 @@ def _cubature(log: Log, filter: Filter) -> Cubature:
 
 
 def struck(one: Watched, seed: int) -> Watched:
-    """One landmark after the other lies for a minute, each chosen at random among those that are heard meanwhile."""
+    """One landmark after the other is faulty for a minute, chosen at random among those with ranges in that time."""
     rng, case = np.random.default_rng([seed, 90]), one.case
     log, names = case.log, [channel.sensor for channel in case.log.channels if channel.name == "range"]
     faults = []

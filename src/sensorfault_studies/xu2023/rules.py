@@ -1,4 +1,4 @@
-"""What rules can be learned, from how much, and what they look like."""
+"""Learned rules: from how much data, and what they look like."""
 
 import numpy as np
 
@@ -18,12 +18,12 @@ from sensorfault_studies.xu2023.learning_figures import features, learning, memb
 from sensorfault_studies.xu2023.scenario import WRONG_M, Scenario, scenario
 
 Q = 0.2
-POOL, SEEN = 300, 1000  # seeds of the first missions learned from and judged
+POOL, SEEN = 300, 1000  # first seeds of the training and test missions
 
 
 def findings(effort: Effort) -> Findings:
-    """Open loop: every range is taken in, as in the training of the paper."""
-    effort.tell("rules from much and from little", 0.0)
+    """Open loop: every range is used, as in the training of the paper."""
+    effort.progress("rules from many and from few ranges", 0.0)
     many = 3 if effort.quick else 8
     pool, seen = ([scenario(first + k) for k in range(many)] for first in (POOL, SEEN))
     numbers = Numbers("E-rules", "simulated", "simulated")
@@ -43,14 +43,16 @@ def findings(effort: Effort) -> Findings:
             ),
         ]
     figures.append(_features(pool[0]))
-    figures.append(learning("e-rules_learning", "How much there must be to learn from", rows))
-    said = sentences(fit_anfis(*joined(learn), POOLED).model, FEATURES)
-    remark = "Rules learned from eight missions, both leaders, of the logarithms: " + " ".join(said)
+    figures.append(learning("e-rules_learning", "Learning curves", rows))
+    rules_in_words = sentences(fit_anfis(*joined(learn), POOLED).model, FEATURES)
+    remark = "Rules learned from eight missions, both leaders, on logarithms of the features: " + " ".join(
+        rules_in_words
+    )
     return Findings(rows, tuple(figures), (remark,))
 
 
 def _late(case: Scenario) -> Lesson:
-    """The judged part, in a run through the whole mission."""
+    """The test part of a run through the whole mission."""
     return Lesson(case.log, np.where(case.judged[:, None], case.error, np.nan))
 
 
@@ -60,7 +62,7 @@ def _labelled(lessons: list[Lesson], adaptive: bool) -> list[Labelled]:
 
 
 def _features(case: Scenario) -> Figure:
-    """Of the first leader, before the judged part."""
+    """The features of the first leader in the training part."""
     lesson = early(case)
     plain, adaptive = (_labelled([lesson], kind)[0] for kind in (False, True))
     at = lesson.log.time[~np.isnan(lesson.error[:, 0])][-len(plain.target) :]

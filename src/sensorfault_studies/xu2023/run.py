@@ -1,4 +1,4 @@
-"""A mission through a monitor: what it flags, and where it believes to be."""
+"""Run a monitor over a mission: flagged ranges and position error."""
 
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from sensorfault_studies.xu2023.scenario import Scenario
 
 
 class Flown(NamedTuple):
-    """Of each tick: which of the L ranges are flagged, the residual, and how far off the position is [m]."""
+    """For each tick: which of the L ranges are flagged, the residual, and the position error [m]."""
 
     flagged: Bool[np.ndarray, "T L"]
     residual: Residual
@@ -39,7 +39,7 @@ def _away(at: Float[Array, "T 2"], true: Float[Array, "T 2"]) -> Float[Array, " 
 
 
 def through(monitor: Monitor, case: Scenario, least: int = 0) -> Flown:
-    """The whole mission from a fresh start; `least`: rows to compile for, so that one compilation serves many."""
+    """The whole mission from the initial state; `least`: rows to compile for, so that one compilation serves many."""
     rows = len(case.log)
     after = [(0, max(least - rows, 0)), (0, 0)]
     value = np.pad(case.log.value, after, constant_values=np.nan)
@@ -52,7 +52,7 @@ def through(monitor: Monitor, case: Scenario, least: int = 0) -> Flown:
 
 
 def table(flagged: Bool[np.ndarray, "T L"], case: Scenario) -> Float[np.ndarray, "4"]:
-    """TP, TN, FP, FN of the judged ranges. Xu et al. 2023, section 4.2."""
+    """TP, TN, FP, FN of the test ranges. Xu et al. 2023, section 4.2."""
     there = ~np.isnan(case.error) & case.judged[:, None]
     result, wrong = flagged[there], case.wrong[there]
     return np.array(
@@ -61,7 +61,7 @@ def table(flagged: Bool[np.ndarray, "T L"], case: Scenario) -> Float[np.ndarray,
 
 
 def scores(four: Float[np.ndarray, "4"], off_m: Float[np.ndarray, " n"], gated: bool = True) -> dict[str, float]:
-    """Table 2, equations (36)-(40), and how far off the position is over the judged part; that alone if not `gated`."""
+    """Table 2, equations (36)-(40), and the position error over the test part; only the latter if not `gated`."""
     p50, p90, p95 = np.percentile(off_m, (50, 90, 95))
     place = {"error_p50_m": float(p50), "error_p90_m": float(p90), "error_p95_m": float(p95)}
     if not gated:
@@ -85,7 +85,7 @@ def scores(four: Float[np.ndarray, "4"], off_m: Float[np.ndarray, " n"], gated: 
 
 
 def lockout_s(flagged: Bool[np.ndarray, "T L"], case: Scenario, since_s: float) -> float:
-    """The longest time after `since_s` in which every range that came was refused [s]."""
+    """The longest time after `since_s` in which every range was rejected [s]."""
     came = ~np.isnan(case.error)
     rows = came.any(axis=1) & (case.log.time >= since_s)
     taken = (came & ~flagged)[rows].any(axis=1)

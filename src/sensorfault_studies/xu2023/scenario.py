@@ -1,4 +1,4 @@
-"""The mission of Xu et al. 2023: which ranges lie, and how much is wrong with each."""
+"""The mission of Xu et al. 2023: the faulty ranges, and the error of each range."""
 
 from dataclasses import dataclass, replace
 
@@ -12,23 +12,25 @@ from sensorfault.simulation.acoustic import Ranging
 from sensorfault.simulation.underwater import Mission, sail
 
 DURATION_S, TRAINED_S = 1700.0, 600.0
-WRONG_M = 9.0  # T1: a range further off than this is anomalous
-ANOMALIES = (51, 6)  # of each leader, in the judged part
+WRONG_M = 9.0  # T1: a range with a larger error is an anomaly [m]
+ANOMALIES = (51, 6)  # of each leader, in the test part
 PRINTED = (
     Fault("frozen", "leader1", "range", 100.0, 50.0),
     Fault("frozen", "leader2", "range", 400.0, 50.0),
     Fault("drift", "leader1", "range", 1100.0, 70.0, 0.5),
 )
-LONGEST_S = 60.0  # of the freezes that make up the number
+LONGEST_S = 60.0  # longest frozen fault that is added to reach this number [s]
 RANGING = Ranging(lost=0.015)
 FAST = replace(RANGING, sigma_m=1.0, period_s=2.35)
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """`error`: of each range, L leaders, as GPS would show it [m]; NaN where none arrived. `position`: true, latitude
-    and longitude [rad], or north and east [m] if not `geodetic`. `wrong_m`: beyond which a range is anomalous, one or
-    one a leader. What comes before `since_s` is learned from, the rest is judged.
+    """A log of ranges with known errors.
+
+    `error`: of each range, L leaders, as GPS would show it [m]; NaN where there is no range. `position`: true, latitude
+    and longitude [rad], or north and east [m] if not `geodetic`. `wrong_m`: a range with a larger error is an anomaly,
+    one number or one for each leader. The training part ends at `since_s`; the rest is the test part.
     """
 
     log: Log
@@ -41,12 +43,12 @@ class Scenario:
 
     @property
     def wrong(self) -> Bool[np.ndarray, "T L"]:
-        """The ranges that are anomalous."""
+        """The anomalous ranges."""
         return np.asarray(np.abs(self.error) > self.wrong_m)
 
     @property
     def judged(self) -> Bool[np.ndarray, " T"]:
-        """The rows that are judged."""
+        """The rows of the test part."""
         return np.asarray(self.log.time >= self.since_s)
 
 
@@ -56,8 +58,8 @@ def scenario(seed: int, ranging: Ranging = RANGING) -> Scenario:
 
 
 def struck(mission: Mission, seed: int, wrong_m: float = WRONG_M) -> Scenario:
-    """The mission with the printed faults, and freezes of a leader at random until it has as many wrong ranges as were
-    printed, or as near as it gets.
+    """The mission with the published faults, and random frozen faults of a leader until it has as many wrong ranges as
+    published, or as close as possible.
     """
     rng = np.random.default_rng([seed, 2023])
     faults = list(PRINTED)
@@ -74,7 +76,7 @@ def struck(mission: Mission, seed: int, wrong_m: float = WRONG_M) -> Scenario:
 
 
 def error(log: Log, truth: Log) -> Float[np.ndarray, "T L"]:
-    """How far off each range is [m], NaN where none arrived."""
+    """Error of each range [m], NaN where there is none."""
     columns = [i for i, channel in enumerate(log.channels) if channel.name == "range"]
     result = np.where(log.fresh[:, columns], log.value[:, columns], np.nan)
     return np.asarray(result - truth.value[:, columns])
@@ -86,14 +88,14 @@ def _count(mission: Mission, faults: list[Fault], j: int, wrong_m: float) -> int
 
 
 def _free(faults: list[Fault], sensor: str, start: float, length: float) -> bool:
-    """Whether nothing else is wrong with that leader from a while before until a while after."""
+    """Whether that leader has no other fault from some time before until some time after."""
     return all(f.sensor != sensor or start > f.end_s + 10 or start + length < f.start_s - 10 for f in faults)
 
 
 def _freeze(
     mission: Mission, faults: list[Fault], j: int, when: tuple[float, float], missing: int, wrong_m: float
 ) -> list[Fault]:
-    """A freeze that makes wrong ranges, and no more than are missing; none if there is no such."""
+    """A frozen fault that makes wrong ranges, but no more than are missing; empty if there is none."""
     before = _count(mission, faults, j, wrong_m)
     for length in np.arange(when[1], 10.0, -2.5):
         frozen = Fault("frozen", f"leader{j + 1}", "range", when[0], float(length))

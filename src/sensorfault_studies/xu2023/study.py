@@ -1,4 +1,4 @@
-"""Paper E: ranges under water that lie, told by chi-square, by fuzzy rules, and by what we stand for."""
+"""Xu et al. 2023: faulty ranges under water, detected by chi-square, fuzzy rules, and the recommended recipe."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -16,10 +16,10 @@ JUDGED, LEARNED = 0.85, 0.1  # shares of the work
 
 
 def study(effort: Effort) -> Findings:
-    """All of E.
+    """All experiments of E.
 
     Raises:
-        LogError: the real paths or ranges are not there; said before any work is done.
+        LogError: the real paths or ranges do not exist; raised before any work is done.
     """
     for folder in FOLDERS:
         real(folder)
@@ -35,11 +35,11 @@ def study(effort: Effort) -> Findings:
 
 
 def _part(effort: Effort, begin: float, share: float) -> Effort:
-    return replace(effort, tell=lambda doing, done: effort.tell(doing, begin + share * done))
+    return replace(effort, progress=lambda doing, done: effort.progress(doing, begin + share * done))
 
 
 def rows_of(result: Result) -> Iterator[Row]:
-    """With the paper's numbers beside its own methods, as printed, on the simulated mission."""
+    """Rows; the paper's numbers are added to those of its methods, as published, on the simulated mission."""
     for row in result.numbers.rows():
         variant = row.condition.removeprefix(result.condition.words).removesuffix("as-printed").strip()
         printed = PAPER.get(f"{row.method} {variant}".strip())
@@ -56,12 +56,12 @@ def rows_of(result: Result) -> Iterator[Row]:
 
 STUDY = Study(
     "xu2023",
-    "Wrong ranges under water, and fuzzy rules that predict by how much",
+    "Faulty ranges under water, and fuzzy rules that predict their error",
     "Xu et al. 2023",
     study,
     {
         "E": "Two leaders, one follower",
-        "E-rules": "What can be learned of a range's error, every range taken in",
-        "E-ranging": "Real ranges: walkers by radio, robots to landmarks, a dive by sound",
+        "E-rules": "How well the error of a range can be learned, with every range used",
+        "E-ranging": "Real ranges: pedestrians by radio, robots to landmarks, a dive by sound",
     },
 )

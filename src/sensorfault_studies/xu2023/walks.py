@@ -1,4 +1,4 @@
-"""Real walks among ultra-wideband anchors, with a surveyor's receiver for truth."""
+"""Real walks among ultra-wideband anchors; the truth is from a survey-grade receiver."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -14,10 +14,10 @@ from sensorfault_studies.data import real
 from sensorfault_studies.xu2023.ranged_log import START, TAG, ranged_log
 from sensorfault_studies.xu2023.scenario import Scenario
 
-LEARNED = 1 / 3  # of each walk
-WRONG = 5.0  # a range further off than so many robust standard deviations of its anchor is wrong
-PAUSE_S = 0.03  # between two rounds at least
-WILD_M = 0.1  # errors beyond this hardly count while clock and height are fitted
+LEARNED = 1 / 3  # training share of each walk
+WRONG = 5.0  # a range with an error above so many robust standard deviations of its anchor is wrong
+PAUSE_S = 0.03  # shortest time between two rounds [s]
+WILD_M = 0.1  # larger errors hardly count in the fit of clock and height [m]
 
 
 class Anchor(NamedTuple):
@@ -37,18 +37,18 @@ class Walk:
     anchors: dict[str, Anchor]
 
     def at(self, time: Float[np.ndarray, " n"]) -> Float[np.ndarray, "n 3"]:
-        """Where the ground under the tag was [m]."""
+        """Position of the ground under the tag [m]."""
         return np.column_stack([np.interp(time, self.track[:, 0], self.track[:, i]) for i in (1, 2, 3)])
 
     def error(self, anchor: Anchor, lag_s: float = 0.0, height_m: float = 0.0) -> Float[np.ndarray, " n"]:
-        """How far off each range is, if it shows where the tag was `lag_s` before [m]."""
+        """Error of each range [m], if it belongs to the tag's position `lag_s` earlier."""
         tag = self.at(anchor.time - lag_s) + np.array([0.0, 0.0, height_m])
         return np.asarray(anchor.range - np.linalg.norm(tag - anchor.position, axis=1))
 
 
 @cache
 def walks() -> tuple[Walk, ...]:
-    """All four, with the ranges that came while truth was there.
+    """All four walks, with the ranges for which there is truth.
 
     Raises:
         LogError: they are not there.
@@ -71,7 +71,7 @@ def _walk(folder: Path) -> Walk:
 
 
 class Survey(NamedTuple):
-    """What the first third of a walk says by its truth: of the clocks and the tag [s], [m], of each anchor [m]."""
+    """From the truth of a walk's first third: clock lag [s], tag height [m], offset and sigma of each anchor [m]."""
 
     lag_s: float
     height_m: float
@@ -80,7 +80,7 @@ class Survey(NamedTuple):
 
 
 def surveyed(walk: Walk) -> Survey:
-    """The file says neither how high the tag was carried nor how much later its clock is than the receiver's."""
+    """Fits the height of the tag and the lag of its clock, which the file does not contain."""
     until = LEARNED * walk.track[-1, 0]
     early = [Anchor(a.position, a.time[a.time < until], a.range[a.time < until]) for a in walk.anchors.values()]
 
@@ -93,12 +93,12 @@ def surveyed(walk: Walk) -> Survey:
 
 
 def robust_sd(error: Float[np.ndarray, " n"]) -> float:
-    """From the median distance to the median, as of Gaussian numbers."""
+    """Robust standard deviation, from the median absolute deviation."""
     return 1.4826 * float(np.median(np.abs(error - np.median(error))))
 
 
 def scenario(walk: Walk) -> Scenario:
-    """A tick a round of ranges; begins at the first true position, and knows how high the tag is carried."""
+    """One tick for each round of ranges; starts at the first true position, with known height of the tag."""
     known = surveyed(walk)
     time = _rounds(np.unique(np.concatenate([anchor.time for anchor in walk.anchors.values()])))
     ranges, errors = np.full((2, len(time), len(walk.anchors)), np.nan)
@@ -122,5 +122,5 @@ def scenario(walk: Walk) -> Scenario:
 
 
 def _rounds(times: Float[np.ndarray, " n"]) -> Float[np.ndarray, " T"]:
-    """The last time of each round; the anchors of one answer within milliseconds, ten rounds a second."""
+    """The last time of each round; the anchors answer within milliseconds, in ten rounds a second."""
     return np.asarray(times[np.append(np.diff(times) > PAUSE_S, True)])

@@ -1,4 +1,4 @@
-"""What the air adds to a pseudorange [m], by the models that single-frequency receivers use. Angles in rad."""
+"""Atmospheric delays of a pseudorange [m], by the models of single-frequency receivers. Angles in rad."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ _NIGHT_S = 5e-9  # the delay by night
 _NOON_S = 50_400.0  # local time of the largest delay: 14 o'clock
 _LEAST_PERIOD_S = 72_000.0
 _DAY_S = 86_400.0
-_LOWEST = 0.0524  # elevation below which the mapping to the zenith means nothing: 3 degrees [rad]
+_LOWEST = 0.0524  # elevation below which the mapping to the zenith is not valid: 3 degrees [rad]
 
 Numbers = float | Float[Any, "*#n"]
 
@@ -25,7 +25,7 @@ def klobuchar(
     time_of_week: Numbers | float,
     frequency: Numbers | float = L1_HZ,
 ) -> Numbers:
-    """Delay by the ionosphere [m] (IS-GPS-200, figure 20-4); it takes away about half of what is really there.
+    """Delay by the ionosphere [m] (IS-GPS-200, figure 20-4); it corrects about half of the true delay.
 
     Args:
         coefficients: the broadcast α0 to α3 and β0 to β3.

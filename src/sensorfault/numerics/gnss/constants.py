@@ -1,8 +1,8 @@
-"""What the interface documents fix."""
+"""Constants of the interface documents."""
 
 LIGHT_M_S = 299_792_458.0  # c
 EARTH_RATE_RAD_S = 7.292_115_146_7e-5  # Ω̇e of WGS-84 (IS-GPS-200, table 20-IV)
-EARTH_RATE = {  # by which each system's orbits are told: BeiDou's, taken for GPS's, is 24 m off at the end of a week
+EARTH_RATE = {  # of each system's orbits; GPS's rate for BeiDou gives an error of 24 m at the end of a week
     "G": EARTH_RATE_RAD_S,
     "J": EARTH_RATE_RAD_S,
     "E": EARTH_RATE_RAD_S,  # OS SIS ICD, table 68
@@ -15,7 +15,7 @@ EARTH_MU = {  # gravitational constant times the mass of the earth, as each syst
     "C": 3.986_004_418e14,  # BeiDou: BDS-SIS-ICD-B1I, table 5-11
 }
 L1_HZ = 1_575.42e6
-"""The frequency that GPS and Galileo share, and that Klobuchar's delay is told for."""
+"""The frequency that GPS and Galileo share; Klobuchar's delay is for this frequency."""
 B3I_HZ = 1_268.52e6
-"""BeiDou's, by which its satellites' clocks are told (BDS-SIS-ICD-B1I, 5.2.4.10)."""
+"""BeiDou's frequency, to which its satellite clocks refer (BDS-SIS-ICD-B1I, 5.2.4.10)."""
 WEEK_S = 604_800.0

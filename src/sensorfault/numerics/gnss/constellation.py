@@ -1,4 +1,4 @@
-"""A constellation for simulations: satellites evenly on circles, as GPS has them."""
+"""A constellation for simulations: satellites evenly spaced on circular orbits like those of GPS."""
 
 from typing import Any
 

@@ -14,7 +14,7 @@ _MU = 3.986_004_418e14  # [m³/s²]
 _EQUATOR_M = 6_378_136.0  # ae
 _J2 = 1.082_625_75e-3  # second zonal harmonic; the ICD has C20 = -J2
 _RATE = 7.292_115e-5  # ω of PZ-90 [rad/s]
-STEPS = 15  # of Runge and Kutta's; of a minute each at the end of the quarter of an hour that a state is good for
+STEPS = 15  # Runge-Kutta steps; a minute each at the end of the 15 minutes for which a state is valid
 
 Each = Float[Any, "*#n"]
 Numbers = float | Each
@@ -33,7 +33,7 @@ class GlonassEphemeris(NamedTuple):
 
 
 def state(ephemeris: GlonassEphemeris, time: Numbers) -> tuple[Vectors, Vectors]:
-    """Position [m] and velocity [m/s] in the earth's frame of that very time (ICD, appendix 3.1.2)."""
+    """Position [m] and velocity [m/s] in the earth's frame at that time (ICD, appendix 3.1.2)."""
     xp = namespace(time, *ephemeris)
     step = ((time - ephemeris.toe) / STEPS)[..., None]
     place, speed = ephemeris.start, ephemeris.speed
@@ -52,13 +52,13 @@ def state(ephemeris: GlonassEphemeris, time: Numbers) -> tuple[Vectors, Vectors]
 
 
 def clock(ephemeris: GlonassEphemeris, time: Numbers) -> Each:
-    """How far the satellites' clocks are ahead of GPS time [s]; relativity is in γ (ICD, 3.3.3)."""
+    """Clock offset of the satellites from GPS time [s]; relativity is in γ (ICD, 3.3.3)."""
     # Δt = -τn + γn (t - tb)
     return ephemeris.offset + ephemeris.drift * (time - ephemeris.toe)
 
 
 def _acceleration(xp: Any, place: Vectors, speed: Vectors, pull: Vectors) -> Vectors:
-    """In the rotating frame: the earth's pull with its flattening, the frame's rotation, sun and moon."""
+    """Acceleration in the rotating frame: gravitation with J2, rotation of the frame, sun and moon."""
     x, y, z = place[..., 0], place[..., 1], place[..., 2]
     r2 = x**2 + y**2 + z**2
     # a = μ / r³,  b = 3/2 J2 μ ae² / r⁵,  c = 5 z² / r²

@@ -1,4 +1,4 @@
-"""Broadcast orbits of Kepler's kind: GPS, QZSS, Galileo and BeiDou.
+"""Broadcast Keplerian orbits: GPS, QZSS, Galileo and BeiDou.
 
 Source: IS-GPS-200 (2022), tables 20-IV and 20.3.3.3.3.1; Galileo OS SIS ICD (2021), tables 64 and 5.1.3;
 BDS-SIS-ICD-B1I 3.0 (2019), table 5-11. Times are seconds of GPS time since 1980-01-06, which a float64 holds to 0.2 µs
@@ -28,7 +28,7 @@ class Ephemeris(NamedTuple):
     af0: Each  # clock: offset [s]
     af1: Each  # drift [s/s]
     af2: Each  # ageing [s/s²]
-    group_delay: Each  # TGD or BGD, of the frequency that is heard [s]
+    group_delay: Each  # TGD or BGD of the received frequency [s]
     sqrt_a: Each  # √A [√m]
     eccentricity: Each  # e
     anomaly: Each  # M0
@@ -47,7 +47,7 @@ class Ephemeris(NamedTuple):
     toe_of_week: Each  # toe counted from the start of its own system's week [s]
     mu: Each  # [m³/s²]
     earth_rate: Each  # Ω̇e [rad/s]
-    tilt: Each  # about the x axis, of the equator that the orbit is told by; 0 but for geostationary satellites
+    tilt: Each  # of the orbit's reference equator about the x axis; 0 except for geostationary satellites
 
 
 def eccentric_anomaly(mean: Numbers, eccentricity: Numbers) -> Numbers:
@@ -61,7 +61,7 @@ def eccentric_anomaly(mean: Numbers, eccentricity: Numbers) -> Numbers:
 
 
 def position(ephemeris: Ephemeris, time: Numbers) -> Float[Any, "*#n 3"]:
-    """Where the satellites are, in the earth's frame (ECEF) of that very time [m].
+    """Positions of the satellites in the earth's frame (ECEF) at that time [m].
 
     Args:
         ephemeris: of any shape that broadcasts with `time`.
@@ -94,12 +94,12 @@ def position(ephemeris: Ephemeris, time: Numbers) -> Float[Any, "*#n 3"]:
 
 
 def velocity(ephemeris: Ephemeris, time: Numbers) -> Float[Any, "*#n 3"]:
-    """How they move in the earth's frame [m/s], by a central difference over a second: to 1e-5 m/s."""
+    """Velocities in the earth's frame [m/s], by a central difference over a second: to 1e-5 m/s."""
     return (position(ephemeris, time + _STEP_S) - position(ephemeris, time - _STEP_S)) / (2 * _STEP_S)
 
 
 def clock(ephemeris: Ephemeris, time: Numbers) -> Each:
-    """How far the satellites' clocks are ahead of GPS time [s], as one frequency's user sees them.
+    """Clock offset of the satellites from GPS time [s], for single-frequency users.
 
     With the relativistic part and the group delay (IS-GPS-200, 20.3.3.3.3.1 and 20.3.3.3.3.2); `time` may be the
     satellite's own.
@@ -114,7 +114,7 @@ def clock(ephemeris: Ephemeris, time: Numbers) -> Each:
 
 
 def _anomaly(ephemeris: Ephemeris, since: Numbers) -> Numbers:
-    """E so many seconds after toe."""
+    """Eccentric anomaly so many seconds after toe."""
     xp = namespace(since, *ephemeris)
     # n = √(μ / A³) + Δn,  M = M0 + n t
     n = xp.sqrt(ephemeris.mu) / ephemeris.sqrt_a**3 + ephemeris.delta_n

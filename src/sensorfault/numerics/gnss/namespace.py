@@ -1,4 +1,4 @@
-"""One arithmetic for NumPy and JAX: the module that an array's functions are in."""
+"""The array namespace, NumPy or JAX, of some arrays."""
 
 from typing import Any
 

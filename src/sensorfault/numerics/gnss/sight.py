@@ -1,4 +1,4 @@
-"""The way of a signal: how long it is while the earth turns under it, from where it comes, how far to trust it."""
+"""The path of a signal: distance with the earth's rotation, direction, and noise of the pseudorange."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ Points = Float[Any, "*#n 3"]
 
 
 def turned(satellite: Points, flight_s: Numbers) -> Float[Any, "*#n 3"]:
-    """A satellite's place in the earth's frame of the time of arrival: the frame turned on by Ω̇e τ.
+    """A satellite's position in the earth's frame at the time of arrival: rotated by Ω̇e τ.
 
     Args:
         satellite: ECEF of the time of transmission [m].
@@ -28,7 +28,7 @@ def turned(satellite: Points, flight_s: Numbers) -> Float[Any, "*#n 3"]:
 
 
 def distance(receiver: Points, satellite: Points) -> Float[Any, "*#n"]:
-    """How far the signal came [m], with the turn of the earth meanwhile (Sagnac).
+    """Distance that the signal travelled [m], with the earth's rotation meanwhile (Sagnac).
 
     Args:
         receiver: ECEF of the time of arrival [m].
@@ -65,7 +65,7 @@ def elevation_azimuth(
 
 
 def pseudorange_sigma(elevation: Numbers, zenith: float = 0.3, horizon: float = 0.3, least: float = 0.0873) -> Numbers:
-    """How far a pseudorange scatters [m]: σ² = zenith² + horizon² / sin² el.
+    """Standard deviation of a pseudorange [m]: σ² = zenith² + horizon² / sin² el.
 
     Args:
         elevation: [rad]; below `least` (5 degrees) as there.

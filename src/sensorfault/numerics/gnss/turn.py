@@ -1,4 +1,4 @@
-"""Coordinates in turned axes."""
+"""Coordinates in rotated axes."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ Numbers = float | Float[Any, "*#n"]
 
 
 def turn(first: Numbers, second: Numbers, angle: Numbers) -> tuple[Numbers, Numbers]:
-    """Two coordinates in axes that are turned by an angle [rad] from the first towards the second."""
+    """Two coordinates in axes rotated by an angle [rad] from the first towards the second."""
     xp = namespace(first, second, angle)
     cos, sin = xp.cos(angle), xp.sin(angle)
     # x' = x cos φ + y sin φ,  y' = y cos φ - x sin φ

@@ -1,4 +1,4 @@
-"""Networks without a memory: they see the whole window at once."""
+"""Networks without memory, which get the whole window at once."""
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -17,7 +17,7 @@ class Dense(eqx.Module):
 
 
 class Linear(eqx.Module):
-    """One linear map of a window (s, C) to D outputs: with the outputs' own past in it, an autoregressive model."""
+    """A linear map of a window (s, C) to D outputs; if the window has the outputs' past, an autoregressive model."""
 
     output: Dense
 

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from sensorfault.numerics.networks.dense import Dense
 
-Cells = tuple[Float[Array, "H *batch"], Float[Array, "H *batch"]]  # what they told last, what they remember
+Cells = tuple[Float[Array, "H *batch"], Float[Array, "H *batch"]]  # last output h, cell state c
 
 
 class LstmLayer(eqx.Module):

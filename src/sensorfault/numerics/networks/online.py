@@ -22,8 +22,8 @@ def taught(
 ) -> Mlp:
     """The network of one hidden layer of tanh after this sample: at most `most` steps down its squared error.
 
-    Only what lies beyond `tolerance` is an error, and only outputs that teach have one. The step is normalised: 1 is
-    the longest that takes no output beyond its target, to first order.
+    Only the part beyond `tolerance` is an error, and only outputs that teach have one. The step is normalised: 1 is
+    the longest step that moves no output beyond its target, to first order.
     """
 
     def off(network: Mlp) -> tuple[Float[Array, " D"], Float[Array, " L"]]:
