@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 from click.core import ParameterSource
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import detecting, limits, options, show
 
 
 @click.command("demo")
@@ -49,11 +49,11 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     write(injected.log, out / f"{scenario.words}.csv")
     (out / f"{scenario.words}.truth.json").write_text(truth_to_json(injected.truth) + "\n")
     save(model, out / f"{scenario.vehicle}.sensorfault")
-    found = work.detect(model, judged, "judging the rest, sensors lying")
+    found = detecting.detect(model, judged, "judging the rest, with faults")
     sentences = (
         f"Fitted by {method} on the first {scenario.learn_s / 60:.0f} minutes.",
-        *work.rate(model),
-        *work.not_watched(model),
+        *limits.rate(model),
+        *limits.not_watched(model),
     )
     write_page(
         found, out / "report.html", injected.truth, f"Simulated {scenario.words} with injected faults", sentences
@@ -69,7 +69,7 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
         f"{false_isolations} events on healthy channels meanwhile, {len(verdict.false_alarms)} false alarms in "
         f"{verdict.healthy_hours * 60:.1f} healthy minutes."
     )
-    for sentence in work.not_watched(model):
+    for sentence in limits.not_watched(model):
         show.say(sentence)
     show.say(f"Open {out / 'report.html'}; the log, the truth and the model lie beside it.")
     show.write_json(json_path, {"events": [event.as_dict() for event in found.events]})

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import limits, options, outputs, reading, show
 
 
 @click.command("fit")
@@ -38,8 +38,8 @@ def command(
     from sensorfault.runtime.store import save
 
     recipe(method)
-    work.check_outputs([out, json_path, checkpoint], [log, vehicle])
-    table = work.read_log(log, vehicle)
+    outputs.check_outputs([out, json_path, checkpoint], [log, vehicle])
+    table = reading.read_log(log, vehicle)
     if until_s is not None:
         table = table.between(end_s=until_s)
     with show.progress() as bar:
@@ -49,8 +49,8 @@ def command(
     target = out or Path(f"{table.name}.sensorfault")
     save(model, target)
     watched = [c.path for c, w in zip(model.channels, model.watched, strict=True) if w]
-    show.say(work.watches(watched))
-    for sentence in (*work.suspects(model), *work.not_watched(model), *work.smallest(model), *work.rate(model)):
+    show.say(limits.watches(watched))
+    for sentence in (*limits.suspects(model), *limits.not_watched(model), *limits.smallest(model), *limits.rate(model)):
         show.say(sentence)
     show.say(f"Wrote {target}.")
     show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})

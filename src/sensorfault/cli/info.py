@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import long, options, show, work
+from sensorfault.cli import cells, options, outputs, reading, show
+from sensorfault.core.times import clock
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
-    from sensorfault.logs.joining import Said
-    from sensorfault.logs.summary import SensorSummary, Summing
+    from sensorfault.logs.summary import SensorSummary
 
 _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at", "held %")
 
@@ -28,10 +28,13 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
     """
     from dataclasses import asdict
 
-    work.check_outputs([json_path], [log, vehicle])
-    summing, said = long.summed(log, vehicle) if long.by_parts(log, by_parts) else _whole(log, vehicle)
+    from sensorfault.logs.summary import Summing
+
+    outputs.check_outputs([json_path], [log, vehicle])
+    summing = Summing()
+    said = reading.read_in(reading.in_parts(log, by_parts), log, vehicle, summing.take)
     table, sensors = summing.first, summing.sensors
-    assert table is not None
+    assert table is not None  # a log without a row is an error
     applies, lacking, without = _methods(table)
     answer = json_path != "-"
     show.table(f"Sensors of {table.name}", _COLUMNS, [_row(one) for one in sensors], answer, right=("gaps", "at"))
@@ -51,16 +54,6 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
         "does_not_apply": lacking,
     }
     show.write_json(json_path, result)
-
-
-def _whole(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
-    """The log as one part."""
-    from sensorfault.logs.joining import Said
-    from sensorfault.logs.summary import Summing
-
-    log, summing = work.read_log(path, vehicle), Summing()
-    summing.take(log)
-    return summing, Said(log.notes, log.damage)
 
 
 def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[str, str]]]:
@@ -85,10 +78,10 @@ def _row(sensor: "SensorSummary") -> tuple[str, ...]:
     return (
         sensor.name,
         ", ".join(f"{channel} [{unit}]" if unit else channel for channel, unit in units),
-        show.number(sensor.rate_hz),
+        cells.number(sensor.rate_hz),
         str(sensor.measurements),
         str(sensor.gaps),
-        show.number(sensor.longest_gap_s),
-        "" if sensor.gap_at_s is None else show.clock(sensor.gap_at_s),
-        show.percent(sensor.held) if sensor.held else "",
+        cells.number(sensor.longest_gap_s),
+        "" if sensor.gap_at_s is None else clock(sensor.gap_at_s),
+        cells.percent(sensor.held) if sensor.held else "",
     )

@@ -20,7 +20,7 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
     from sensorfault.core.files import appearing
     from sensorfault.logs import LogError, guess
 
-    with show.reading(log.name) as tell:
+    with show.patient(f"reading {log.name}") as tell:
         found = guess(log, tell)
     target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
     if target.exists() and not force:

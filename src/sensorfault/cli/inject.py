@@ -4,7 +4,8 @@ from pathlib import Path
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import cells, options, outputs, reading, show
+from sensorfault.core.times import clock
 
 
 @click.command("inject")
@@ -35,13 +36,13 @@ def command(
         raise LogError("no --out was given; name the log to write, such as --out faulty.csv.")
     truth_path = out.with_suffix(".truth.json")
     vehicle_path = out.with_suffix(".vehicle.toml")
-    work.check_outputs([out, truth_path, vehicle_path, json_path], [log, vehicle])
-    table = work.read_log(log, vehicle)
+    outputs.check_outputs([out, truth_path, vehicle_path, json_path], [log, vehicle])
+    table = reading.read_log(log, vehicle)
     injected = inject(table, [parse_fault(text, table) for text in faults], seed)
     write(injected.log, out)
     with appearing(truth_path) as temporary:
         temporary.write_text(truth_to_json(injected.truth) + "\n")
     for fault in injected.truth:
-        show.say(f"  {show.clock(fault.start_s)} to {show.clock(fault.end_s)}: {show.fault_words(fault)}")
+        show.say(f"  {clock(fault.start_s)} to {clock(fault.end_s)}: {cells.fault_words(fault)}")
     show.say(f"Wrote {out} and {truth_path}.")
     show.write_json(json_path, {"log": str(out), "truth": [fault.as_dict() for fault in injected.truth]})

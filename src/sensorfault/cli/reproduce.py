@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import options, outputs, show
 
 if TYPE_CHECKING:
     from sensorfault_studies.catalog import Study
@@ -32,7 +32,7 @@ def command(name: str, seeds: int, quick: bool, out: Path | None, json_path: str
     studies = _studies(name)
     _check_folder(out)
     pages = [out / f"{study.name}{ending}" for study in studies for ending in (".html", ".json")] if out else []
-    work.check_outputs([*(path for path in pages if path.parent.is_dir()), json_path], [])
+    outputs.check_outputs([*(path for path in pages if path.parent.is_dir()), json_path], [])
     code = commit()
     done = [_run(study, seeds, quick) for study in studies]
     for study, findings in zip(studies, done, strict=True):

@@ -1,4 +1,4 @@
-"""What each sensor said, and what was put in its place."""
+"""The signals: what each sensor measured, and the stand-in where it was faulty."""
 
 from collections.abc import Sequence
 from html import escape
@@ -10,11 +10,11 @@ from sensorfault.faults.fault import Fault
 from sensorfault.report.page_figure import Json, Row, packed, stacked
 from sensorfault.report.page_marks import at, injected, shades
 from sensorfault.report.page_sketch import Sketch
-from sensorfault.report.page_words import SILENCE_ONLY, blind
+from sensorfault.report.page_words import DROPOUTS_ONLY, blind
 
 
 def digits(value: Float[np.ndarray, " K"]) -> int:
-    """Digits that tell a thousandth of the signal's span from nothing: more for a longitude than for a rate."""
+    """How many digits show a thousandth of the signal's span: more for a longitude than for a rate."""
     finite = value[np.isfinite(value)]
     span = float(np.ptp(finite)) if finite.size else 0.0
     if span == 0.0:
@@ -48,8 +48,8 @@ def _row(sketch: Sketch, column: int, truth: Sequence[Fault]) -> Row:
     marks = shades(sketch, lambda event: at(event, channel)) + injected(sketch, channel, truth)
     text = f"<b>{name}</b>{f' [{unit}]' if unit else ''}"
     if not sketch.watched[column] and channel.sensor not in blind(sketch):
-        text += f" not judged, {SILENCE_ONLY}"
-    return Row(text if traces else f"{text} never spoke", traces, marks)
+        text += f", {DROPOUTS_ONLY}"
+    return Row(text if traces else f"{text} has no data", traces, marks)
 
 
 def signals(sketch: Sketch, sensor: str, truth: Sequence[Fault]) -> Json:

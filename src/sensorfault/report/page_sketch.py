@@ -1,9 +1,10 @@
-"""What is drawn of a log: few points of each line, the runs of each verdict. Of a long log gathered part by part."""
+"""What the page draws of a log: some points of each line and the runs of each verdict, gathered part by part."""
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.events import words
 from sensorfault.events.event import Event
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import from_si
@@ -13,29 +14,39 @@ from sensorfault.runtime.result import Detection
 
 POINTS = 300_000  # all lines together, and at most as many again around the events: 3 to 7 MB
 BANDS = 1500  # of a sensor's verdicts
-MOTION, NAMELESS = "vehicle motion", "unknown which"  # where no sensor is named
 
 
 class Sketch:
-    """A detection as a page draws it. `log` is its first part, for names and notes; `rows` and `end_s` are of all."""
+    """A detection as the page draws it, gathered part by part. A whole log is one part.
 
-    def __init__(self, first: Detection) -> None:
-        self.log, self.method, self.watched = first.log, first.method, first.watched
-        self.rows = 0
-        self.start_s = self.end_s = float(first.log.time[0]) if len(first.log) else 0.0
-        self.period_s = first.log.period_s
+    `log` is the first part: channels, sensors, name and clock. The other attributes are of all parts.
+    """
+
+    log: Log
+
+    def __init__(self, points: int = POINTS) -> None:
+        self.rows, self._points = 0, points
         self.events: tuple[Event, ...] = ()
-        self.channels = [Drawn() for _ in first.log.channels]
         self.tests: dict[tuple[str, str | None], Tested] = {}
-        self._lanes = {name: Lane() for name in (*(s.name for s in first.log.sensors), NAMELESS, MOTION)}
-        self._nameless = self._motion = False
+        self._unattributed = self._motion = False
 
     @classmethod
-    def of(cls, detection: Detection) -> "Sketch":
-        """Of a log as a whole."""
-        sketch = cls(detection)
+    def of(cls, detection: Detection, points: int = POINTS) -> "Sketch":
+        """The sketch of a log that was judged whole. `points`: of all lines together.
+
+        Raises:
+            RowsNotKept: it was judged in parts.
+        """
+        sketch = cls(points)
         sketch.take(detection)
         return sketch
+
+    def _begin(self, first: Detection) -> None:
+        self.log, self.method, self.watched = first.log, first.method, first.watched
+        self.start_s = self.end_s = float(first.log.time[0]) if len(first.log) else 0.0
+        self.period_s = first.log.period_s
+        self.channels = [Drawn() for _ in first.log.channels]
+        self._lanes = {name: Lane() for name in (*(s.name for s in first.log.sensors), words.UNKNOWN, words.MOTION)}
 
     @property
     def span(self) -> Span:
@@ -47,17 +58,20 @@ class Sketch:
     @property
     def lanes(self) -> list[tuple[str, Lane]]:
         """Of every sensor; of the whole, where it was faulty and nobody could be named; of the motion."""
-        shown = {NAMELESS: self._nameless, MOTION: self._motion}
+        shown = {words.UNKNOWN: self._unattributed, words.MOTION: self._motion}
         return [(name, lane) for name, lane in self._lanes.items() if shown.get(name, True)]
 
     def take(self, part: Detection, share: float = 1.0) -> None:
-        """The next part, `share` of the whole, and all events so far."""
+        """Add the next part, which is `share` of the log, and take its events, which are all so far."""
+        part = part.received
+        if not hasattr(self, "log"):
+            self._begin(part)
         self.rows, self.events = self.rows + len(part.log), part.events
         if not len(part.log):
             return
         self.end_s = float(part.log.time[-1])
         lines = len(part.log.channels) + len(part.traces)
-        points = max(8, round(share * max(1000, POINTS // max(1, lines))))
+        points = max(8, round(share * max(1000, self._points // max(1, lines))))
         keep = near(part.log.time, self._spans(part.log), points)
         for column, drawn in enumerate(self.channels):
             self._draw(drawn, part, column, keep, points)
@@ -85,10 +99,10 @@ class Sketch:
         time = part.log.time
         for i, sensor in enumerate(part.log.sensors):
             self._lanes[sensor.name].add(time, part.sensor[:, i], most)
-        nameless = (part.sample == FAULT) & (part.sensor.max(axis=1, initial=OK) < FAULT)
-        self._lanes[NAMELESS].add(time, np.where(nameless, FAULT, OK).astype(np.int8), most)
-        self._lanes[MOTION].add(time, part.motion, most)
-        self._nameless |= bool(nameless.any())
+        unattributed = (part.sample == FAULT) & (part.sensor.max(axis=1, initial=OK) < FAULT)
+        self._lanes[words.UNKNOWN].add(time, np.where(unattributed, FAULT, OK).astype(np.int8), most)
+        self._lanes[words.MOTION].add(time, part.motion, most)
+        self._unattributed |= bool(unattributed.any())
         self._motion |= bool((part.motion != UNKNOWN).any())
 
 

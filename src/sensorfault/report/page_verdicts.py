@@ -1,13 +1,14 @@
-"""The verdict on each sensor over time, told by height and colour: ok thin, unknown hatched, fault high."""
+"""The verdict on each sensor over time, by height and colour: ok thin, unknown hatched, fault high."""
 
 from collections.abc import Sequence
 from html import escape
 
+from sensorfault.core.times import clock
 from sensorfault.core.types import FAULT, OK, UNKNOWN, VERDICTS
 from sensorfault.faults.fault import Fault
 from sensorfault.report.page_figure import FOOT, Json, time_axis
 from sensorfault.report.page_sketch import Sketch
-from sensorfault.report.page_words import clock, found
+from sensorfault.report.page_words import found
 
 LANE = 56  # pixels a sensor: its name, the injected faults, the band
 LOOKS: dict[int, Json] = {

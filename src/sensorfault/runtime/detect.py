@@ -9,25 +9,29 @@ from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.table import Log
-from sensorfault.runtime.extractor import EventExtractor, context_of
+from sensorfault.runtime.detector import Detector
+from sensorfault.runtime.extractor import context_of
 from sensorfault.runtime.model import Model
-from sensorfault.runtime.replay import Progress, replay_log
-from sensorfault.runtime.result import Detection, detected
+from sensorfault.runtime.replay import Progress
+from sensorfault.runtime.result import Detection
 from sensorfault.runtime.runners import Stepper, StepResult, nothing_yet
 from sensorfault.runtime.tracker import Tracker
 
 
 def detect(model: Model, log: Log, progress: Progress | None = None) -> Detection:
-    """Replay a log through a fitted monitor, from a fresh start.
+    """Judge a log with a fitted model: a log of one part.
+
+    Args:
+        model: a fitted model; its monitor starts anew.
+        log: at least one row, with the channels and the rate of the model.
+        progress: gets the share of the log that is judged, 0 to 1.
 
     Raises:
-        LogError: the log lacks a channel of the model, or ticks at another rate.
+        LogError: the log is empty, lacks a channel of the model, or is sampled at another rate.
     """
-    log = model.take(log)
-    result = replay_log(model.monitor, log, progress)
-    extractor = EventExtractor(model)
-    extractor.take(log, result)
-    return detected(model, log, result, extractor.events)
+    detector = Detector(model)
+    detector.take(log, progress=progress)
+    return detector.found()
 
 
 class Live:

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.events.event import Event
-from sensorfault.events.export.moments import NS, Moment, door, moments, sentence
+from sensorfault.events.export.moments import NS, Moment, moments, sentence
+from sensorfault.events.words import accused_path
 from sensorfault.logs.table import Log, LogError
 
 TOPIC = "/diagnostics"
@@ -62,7 +63,7 @@ def _array(store: Any, moment: Moment, sequence: dict[str, int]) -> Any:
     pair = types["diagnostic_msgs/msg/KeyValue"]
     status = types["diagnostic_msgs/msg/DiagnosticStatus"](
         level=_ERROR if moment.begins else _OK,
-        name=f"sensorfault: {door(event)}",
+        name=f"sensorfault: {accused_path(event)}",
         message=sentence(event, moment.begins),
         hardware_id=event.sensor or "",
         values=[pair(key=key, value="" if value is None else str(value)) for key, value in event.as_dict().items()],
