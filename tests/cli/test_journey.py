@@ -125,7 +125,7 @@ def test_evaluate_leaves_out_faults_in_the_part_fitted_on(run: Run, drive: Path)
     )
     said = run("evaluate", "bad.csv", "--truth", "bad.truth.json", "--json", "-")
     assert said.code == 0, said.err
-    assert "1 faults lie in the part that was fitted on" in said.err
+    assert "1 fault in the part that was fitted on: not evaluated." in said.err
     assert [outcome["fault"]["start_s"] for outcome in json.loads(said.out)["outcomes"]] == [60.0]
 
 

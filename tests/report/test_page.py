@@ -22,7 +22,7 @@ from sensorfault.report.page import write_page
 from sensorfault.report.page_lines import extremes, line, near, runs
 from sensorfault.report.page_sketch import Sketch, replaced, stale
 from sensorfault.report.page_words import found, headline
-from sensorfault.runtime.result import Detection, Trace
+from sensorfault.runtime.result import Detection, RowsNotKept, Trace
 
 RATE = 50
 
@@ -261,17 +261,36 @@ def test_gathered_part_by_part_it_is_the_same():
     for mine, theirs in zip(parts.channels, whole.channels, strict=True):
         tied = np.isin(theirs.stand_in.x, mine.stand_in.x, invert=True)
         assert tied.sum() <= 2  # but for the sample before or after, where that is in another part
-        for name in ("said", "held"):
+        for name in ("measured", "held"):
             np.testing.assert_array_equal(getattr(mine, name).x, getattr(theirs, name).x)
             np.testing.assert_array_equal(getattr(mine, name).y, getattr(theirs, name).y)
     assert [test.spans_much for test in parts.tests.values()] == [test.spans_much for test in whole.tests.values()]
+
+
+def test_a_page_of_a_log_in_parts_needs_its_sketch(tmp_path):
+    detection = drive()
+    ends = detection.log._rows([0, -1])
+    bare = detection.without_rows(replace(ends, notes=("Read in parts.",)), 3000)
+    with pytest.raises(RowsNotKept, match="was judged in parts"):
+        write_page(bare, tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
+    write_page(bare, tmp_path / "page.html", sketch=Sketch.of(detection))
+    seen = Page((tmp_path / "page.html").read_text("utf-8"))
+    assert "3,000 samples" in seen.text
+    assert "Read in parts." in seen.text
+    assert seen.figures == figures(detection)
+
+
+def test_a_sketch_of_fewer_points():
+    few, many = (Sketch.of(replace(drive(6000), events=()), points) for points in (1000, 100_000))
+    assert 5 * few.channels[0].measured.x.size < many.channels[0].measured.x.size
 
 
 def test_a_short_part_has_few_points():
     detection = drive(6000)
     sketch = Sketch()
     sketch.take(replace(detection, events=()), 0.001)
-    assert sketch.channels[0].said.x.size < 100
+    assert sketch.channels[0].measured.x.size < 100
 
 
 # What the page says

@@ -80,7 +80,7 @@ def test_a_small_file_in_one_part_keeps_its_rows(tmp_path: Path, monkeypatch: py
 
 def test_a_whole_log_is_fitted_on_its_beginning_and_judged_on_the_rest() -> None:
     log, given = fitted.lying().log, list[Log]()
-    done: list[float] = []
+    done, shares = list[float](), list[float]()
 
     def fit(early: Log):
         given.append(early)
@@ -90,9 +90,11 @@ def test_a_whole_log_is_fitted_on_its_beginning_and_judged_on_the_rest() -> None
         take(log)
         return Said(log.notes, log.damage)
 
-    detection = detect_parts(parts, fit, learn=0.25, whole=True, progress=done.append)
+    see = lambda part, share: shares.append(share)  # noqa: E731
+    detection = detect_parts(parts, fit, see, learn=0.25, whole=True, progress=done.append)
     (early,) = given
     assert detection.fitted_on_s == pytest.approx((log.time[0], log.time[0] + 0.25 * log.duration_s))
     assert detection.whole
     np.testing.assert_array_equal(np.concatenate([early.time, detection.log.time]), log.time)
     assert done[-1] == 1.0
+    assert shares == [1.0]  # the page has all its detail for what was judged

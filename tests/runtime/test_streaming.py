@@ -55,7 +55,9 @@ def test_without_a_model_one_is_fitted_on_the_beginning(tmp_path: Path, monkeypa
         return fitted.model()
 
     whole = read(path)
-    result = detect_file(fit, path, learn=0.2)
+    shares: list[float] = []
+    result = detect_file(fit, path, learn=0.2, see=lambda part, share: shares.append(share))
+    assert sum(shares) == pytest.approx(1)
     (early,) = given
     np.testing.assert_array_equal(early.value, whole.value[: len(early)])
     assert result.fitted_on_s[0] == whole.time[0]

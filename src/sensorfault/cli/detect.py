@@ -18,8 +18,8 @@ from sensorfault.cli import answer, detecting, fitting, limits, options, outputs
     "outs",
     type=click.Path(path_type=Path),
     multiple=True,
-    help="Also write the events: .jsonl, .csv or .parquet; .mcap, annotations for viewers (with the log's messages, "
-    "if it is an .mcap); .bag (ROS 1) or a new folder (ROS 2) of DiagnosticArray. May be given several times.",
+    help="Also write the events: .jsonl, .csv or .parquet; .mcap with annotations for viewers (and the log's messages, "
+    "if the log is an .mcap); .bag (ROS 1) or a new folder (ROS 2) with DiagnosticArray. May be given several times.",
 )
 @options.by_parts_option
 @click.option("--report", "report_path", type=click.Path(path_type=Path), help="Also write a report page (HTML).")

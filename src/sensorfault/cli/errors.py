@@ -1,8 +1,8 @@
-"""Which errors are the user's to mend, and their one sentence."""
+"""Which errors a user can fix, and the sentence to print for them."""
 
 
 def sentence_of(error: Exception) -> str | None:
-    """The sentence of a bad input, or None for an error that is ours and deserves its traceback."""
+    """The sentence for bad input; None for a bug, whose traceback is needed."""
     from sensorfault.faults.fault import FaultError
     from sensorfault.logs import LogError
 

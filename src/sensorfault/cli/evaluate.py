@@ -1,4 +1,4 @@
-"""`sensorfault evaluate`: how good a method is on a log."""
+"""`sensorfault evaluate`: how well a method detects faults in a log."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -25,10 +25,12 @@ if TYPE_CHECKING:
     "--truth",
     "truth_path",
     type=click.Path(path_type=Path),
-    help="Faults that are in the log, as 'sensorfault inject' wrote them. Without it, faults are injected here.",
+    help="The faults in the log, a file that 'sensorfault inject' wrote. Without it, evaluate injects faults itself.",
 )
-@click.option("--duration", "duration_s", default=5.0, show_default=True, help="Of each injected fault [s].")
-@click.option("--repeats", default=3, show_default=True, type=click.IntRange(min=1), help="Onsets for each fault.")
+@click.option("--duration", "duration_s", default=5.0, show_default=True, help="Length of each injected fault [s].")
+@click.option(
+    "--repeats", default=3, show_default=True, type=click.IntRange(min=1), help="How often to inject each fault."
+)
 @options.seed_option
 @options.json_option
 def command(
@@ -45,7 +47,8 @@ def command(
 ) -> None:
     """Measure recall, delay, isolation, recovery and false alarms an hour.
 
-    Limits are frozen on other data than they are judged on: those of the model, or the log's own beginning.
+    The model is never evaluated on the data it was fitted on: without --model, it is fitted on the first half of the
+    log and evaluated on the second.
     """
     from sensorfault.evaluation.campaign import campaign
     from sensorfault.evaluation.judge import judge
@@ -79,11 +82,14 @@ def _alarms(judgement: "Judgement") -> str:
 
 
 def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None) -> None:
+    from sensorfault.events.words import accused_path
+    from sensorfault.logs.phrase import counted
+
     columns = ("fault", "found", "delay [s]", "as", "sensor", "channel", "kind", "false isolations")
     rows = []
     for outcome in judgement.outcomes:
         named = outcome.named
-        found = "" if named is None else f"{named.kind} on {named.sensor or '?'}.{named.channel or '*'}"
+        found = "" if named is None else f"{named.kind} on {accused_path(named)}"
         right = tuple(
             "right" if r else "wrong" for r in (outcome.sensor_right, outcome.channel_right, outcome.kind_right)
         )
@@ -93,7 +99,7 @@ def _show_judgement(judgement: "Judgement", learned: int, json_path: str | None)
         rows.append((words, "yes" if outcome.found else "no", delay, found, *result))
     show.table("Injected faults", columns, rows, json_path != "-")
     if learned:
-        show.say(f"{learned} faults lie in the part that was fitted on and were not judged.")
+        show.say(f"{counted(learned, 'fault')} in the part that was fitted on: not evaluated.")
     show.say(_alarms(judgement))
     show.write_json(
         json_path,

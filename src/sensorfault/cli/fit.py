@@ -1,4 +1,4 @@
-"""`sensorfault fit`: a healthy log in, a model file out."""
+"""`sensorfault fit`: fit a model on a healthy log."""
 
 from pathlib import Path
 
@@ -13,11 +13,16 @@ from sensorfault.cli import limits, options, outputs, reading, show
 @options.method_option
 @options.out_option(None, "The model file to write.  [default: NAME.sensorfault here]")
 @click.option("--until", "until_s", type=float, help="Use the log only up to this time [s].")
-@click.option("--held-out", default=0.3, show_default=True, help="Share, from the end, to judge instead of fit.")
+@click.option(
+    "--held-out",
+    default=0.3,
+    show_default=True,
+    help="Share of the log, at its end, to count false alarms on.",
+)
 @click.option(
     "--checkpoint",
     type=click.Path(path_type=Path),
-    help="For methods trained by epochs: written after each epoch, gone on from if it is there.",
+    help="For methods trained by epochs: a file that is saved after every epoch, and resumed from if present.",
 )
 @options.seed_option
 @options.json_option
@@ -32,7 +37,7 @@ def command(
     seed: int,
     json_path: str | None,
 ) -> None:
-    """Fit a method on a healthy log and measure its false alarms on the part held out."""
+    """Fit a method on a healthy log, and count its false alarms on the part held out."""
     from sensorfault.methods.catalog import recipe
     from sensorfault.methods.fit import fit
     from sensorfault.runtime.store import save

@@ -1,4 +1,4 @@
-"""`sensorfault info`: what a log holds, and which methods can watch it."""
+"""`sensorfault info`: what a log holds, and which methods apply to it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,10 +21,9 @@ _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at",
 @options.by_parts_option
 @options.json_option
 def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: str | None) -> None:
-    """Say what a log holds: sensors, rates, gaps, held values; which methods can watch it, and why others cannot.
+    """List what a log holds: sensors, rates, gaps, held values; which methods apply to it, and why others do not.
 
-    Nothing is fitted: a method that seems to apply may still find, when it is fitted, that the log has too little of
-    something.
+    Nothing is fitted. A method that seems to apply may still turn out to need more data when it is fitted.
     """
     from dataclasses import asdict
 
@@ -57,7 +56,7 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
 
 
 def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[str, str]]]:
-    """Methods that the log allows, reasons against the others, and parts that the first have to do without."""
+    """Methods that apply, why others do not, and which parts of the first cannot run."""
     from sensorfault.methods.catalog import METHODS
 
     lacking = {name: reason for name, recipe in METHODS.items() if (reason := recipe.lacks(table))}
@@ -66,7 +65,7 @@ def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[st
 
 
 def _by_reason(lacking: dict[str, str]) -> dict[str, list[str]]:
-    """Each reason once, with all methods that it holds against."""
+    """Each reason once, with all methods that do not apply for that reason."""
     methods: dict[str, list[str]] = {}
     for name, reason in lacking.items():
         methods.setdefault(reason, []).append(name)

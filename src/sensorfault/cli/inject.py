@@ -1,4 +1,4 @@
-"""`sensorfault inject`: a log with faults, and the truth about them."""
+"""`sensorfault inject`: put faults into a log, and write down which."""
 
 from pathlib import Path
 
@@ -17,8 +17,8 @@ from sensorfault.core.times import clock
     multiple=True,
     required=True,
     metavar="KIND:SENSOR[.CHANNEL]:ONSET:DURATION[:MAGNITUDE[sigma]]",
-    help="Such as bias:gyro.z:120:20:5sigma, jam:gnss:60:10 or short:gyro.x:30:0:0.5; may be given several times. "
-    "KIND is short, bias, drift, jam, miss, noise, scale or delay; times in seconds of the log.",
+    help="For example offset:gyro.z:120:20:5sigma, frozen:gnss:60:10 or spike:gyro.x:30:0:0.5; may be given several "
+    "times. KIND is spike, offset, drift, frozen, missing, noise, scale or delay; times in seconds of the log.",
 )
 @options.out_option(None, "The log to write, .csv or .parquet.")
 @options.seed_option
@@ -26,7 +26,7 @@ from sensorfault.core.times import clock
 def command(
     log: Path, vehicle: Path | None, faults: tuple[str, ...], out: Path | None, seed: int, json_path: str | None
 ) -> None:
-    """Put faults into a log. Writes the log, its vehicle.toml and the truth beside it."""
+    """Put faults into a log. Writes the log and, beside it, its vehicle.toml and the list of faults (.truth.json)."""
     from sensorfault.core.files import appearing
     from sensorfault.faults.inject import inject
     from sensorfault.faults.text import parse_fault, truth_to_json

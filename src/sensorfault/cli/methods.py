@@ -1,4 +1,4 @@
-"""`sensorfault methods`: the catalog."""
+"""`sensorfault methods`: the catalog of methods."""
 
 import click
 
@@ -8,7 +8,7 @@ from sensorfault.cli import options, show
 @click.command("methods")
 @options.json_option
 def command(json_path: str | None) -> None:
-    """List the methods: what they are made of, where they come from, what they promise."""
+    """List the methods, their parts and their sources; with --json also the false-alarm rate each is set for."""
     from sensorfault.methods.catalog import METHODS
 
     if json_path != "-":

@@ -1,4 +1,4 @@
-"""`sensorfault report`: the page of a log."""
+"""`sensorfault report`: write the report page of a log."""
 
 from pathlib import Path
 
@@ -15,7 +15,10 @@ from sensorfault.cli import answer, detecting, fitting, limits, options, outputs
 @options.learn_option
 @options.out_option("report.html", "The page to write.")
 @click.option(
-    "--truth", "truth_path", type=click.Path(path_type=Path), help="What 'sensorfault inject' did to the log."
+    "--truth",
+    "truth_path",
+    type=click.Path(path_type=Path),
+    help="The faults in the log, a file that 'sensorfault inject' wrote.",
 )
 @options.by_parts_option
 @options.seed_option
@@ -32,9 +35,9 @@ def command(
     seed: int,
     json_path: str | None,
 ) -> None:
-    """Write a page: signals, scores against limits, faults, and the verdict on each sensor over time.
+    """Write a report page: faults, signals, scores against limits, and the verdict on each sensor over time.
 
-    One file, interactive, opens offline.
+    It is one interactive HTML file that needs no network.
     """
     from sensorfault.report.page import write_page
     from sensorfault.report.page_sketch import Sketch

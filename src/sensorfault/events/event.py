@@ -12,13 +12,19 @@ KINDS = (*FAULT_KINDS, "unknown")
 class Event:
     """One fault, from its first faulty sample to its last.
 
-    `subject`: "sensor", or "motion" when healthy sensors saw a vehicle do what it cannot. `sensor` and `channel` are
-    None where the fault could not be laid at one door; `channel` alone, where all of a sensor's channels are faulty.
-    Channels that one test accuses together (latitude and longitude) are named together.
-    A miss without a sensor is a gap in the log itself: nothing was recorded.
-    `end_s` is None while the fault lasts. `peak_score` and `limit` belong to the test that exceeded its limit most,
-    `method` to the recipe that says so; a miss has no score, its peak is the silence and its limit the silence allowed
-    [s].
+    Args:
+        start_s: time of the first faulty sample [s].
+        end_s: time of the last one [s]; None while the fault is ongoing.
+        subject: "sensor", or "motion" if healthy sensors measured a motion that the vehicle cannot make.
+        sensor: name; None if the faulty sensor could not be isolated. For a kind "missing" without a sensor, nothing at
+            all was recorded: a gap in the log.
+        channel: name; None if all channels of the sensor are faulty. Channels that one test accuses together, such as
+            latitude and longitude, are named together.
+        kind: one of KINDS.
+        peak_score: score of the test that exceeded its limit most, when it did. For a kind "missing", how long nothing
+            was measured [s].
+        limit: the limit of that test. For a kind "missing", how long a sensor may be silent [s].
+        method: the recipe of the model.
     """
 
     start_s: float

@@ -35,5 +35,5 @@ def _row(sketch: Sketch, test: Tested) -> Row:
 
 
 def scores(sketch: Sketch) -> Json:
-    """One row a test."""
+    """The figure of all tests, one row each."""
     return stacked([_row(sketch, test) for test in sketch.tests.values()], sketch.span, 72)

@@ -38,9 +38,9 @@ def _trace(x: Float[np.ndarray, " K"], y: Float[np.ndarray, " K"], name: str, un
 def _row(sketch: Sketch, column: int, truth: Sequence[Fault]) -> Row:
     channel, drawn = sketch.log.channels[column], sketch.channels[column]
     name, unit = escape(channel.name), escape(channel.unit)
-    mode = "lines" if drawn.said.count + drawn.held.count > 200 else "lines+markers"
+    mode = "lines" if drawn.measured.count + drawn.held.count > 200 else "lines+markers"
     parts = (
-        (drawn.said, name, {"color": "--signal", "width": 1.2}),
+        (drawn.measured, name, {"color": "--signal", "width": 1.2}),
         (drawn.held, f"{name}, held", {"color": "--signal", "width": 0.6}),
         (drawn.stand_in, f"{name}, stand-in", {"color": "--standin", "width": 1.6, "dash": "4px,3px"}),
     )
@@ -53,7 +53,7 @@ def _row(sketch: Sketch, column: int, truth: Sequence[Fault]) -> Row:
 
 
 def signals(sketch: Sketch, sensor: str, truth: Sequence[Fault]) -> Json:
-    """One row a channel, in the channel's own unit."""
+    """The figure of a sensor, one row for each channel, in the channel's own unit."""
     columns = sketch.log.of(sensor)
     rows = [_row(sketch, column, truth) for column in columns]
     return stacked(rows, sketch.span, 90 if len(columns) <= 6 else 60)

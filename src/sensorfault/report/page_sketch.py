@@ -12,7 +12,7 @@ from sensorfault.report.page_lines import Span, near
 from sensorfault.report.page_strokes import Drawn, Lane, Tested
 from sensorfault.runtime.result import Detection
 
-POINTS = 300_000  # all lines together, and at most as many again around the events: 3 to 7 MB
+POINTS = 300_000  # of all lines together, and at most as many again around the events: 3 to 7 MB
 BANDS = 1500  # of a sensor's verdicts
 
 
@@ -50,14 +50,14 @@ class Sketch:
 
     @property
     def span(self) -> Span:
-        """The time from the first tick to the last, never empty [s]."""
+        """The time from the first row to the last [s], never empty."""
         if self.end_s > self.start_s:
             return self.start_s, self.end_s
         return (self.start_s - 0.5, self.start_s + 0.5) if self.rows else (0.0, 1.0)
 
     @property
     def lanes(self) -> list[tuple[str, Lane]]:
-        """Of every sensor; of the whole, where it was faulty and nobody could be named; of the motion."""
+        """The verdicts on each sensor; on the whole row, where no sensor could be isolated; on the motion."""
         shown = {words.UNKNOWN: self._unattributed, words.MOTION: self._motion}
         return [(name, lane) for name, lane in self._lanes.items() if shown.get(name, True)]
 
@@ -81,7 +81,7 @@ class Sketch:
         self._judge(part, max(8, round(share * BANDS)))
 
     def _spans(self, log: Log) -> list[Span]:
-        """The events that this part has a share in, or that have just ended."""
+        """The events that overlap this part or ended shortly before it."""
         first, last = float(log.time[0]), float(log.time[-1])
         spans = [(event.start_s, last if event.end_s is None else event.end_s) for event in self.events]
         return [span for span in spans if span[1] >= first - 2 and span[0] <= last + 2]
@@ -89,7 +89,7 @@ class Sketch:
     def _draw(self, drawn: Drawn, part: Detection, column: int, keep: Bool[np.ndarray, " T"], points: int) -> None:
         log, unit = part.log, part.log.channels[column].unit
         value, old = from_si(log.value[:, column], unit), stale(log, column, drawn.fresh_s)
-        drawn.said.add(log.time, np.where(old, np.nan, value), keep, points)
+        drawn.measured.add(log.time, np.where(old, np.nan, value), keep, points)
         drawn.held.add(log.time, np.where(old, value, np.nan), keep, points)
         drawn.stand_in.add(log.time, from_si(replaced(part, column), unit), keep, points)
         at = log.time[log.fresh[:, column]]
@@ -107,9 +107,9 @@ class Sketch:
 
 
 def stale(log: Log, column: int, fresh_s: float = -np.inf) -> Bool[np.ndarray, " T"]:
-    """Where a value is held for longer than the sensor's own period: the last measurement, said again and again.
+    """Rows in which a value is held for longer than the sensor's own period: the last measurement, repeated.
 
-    `fresh_s`: when the last measurement before this part came.
+    `fresh_s`: time of the last measurement before this part [s].
     """
     fresh = log.fresh[:, column]
     last: Float[np.ndarray, " T"] = np.maximum.accumulate(np.where(fresh, log.time, fresh_s))
@@ -119,7 +119,7 @@ def stale(log: Log, column: int, fresh_s: float = -np.inf) -> Bool[np.ndarray, "
 
 
 def replaced(detection: Detection, column: int) -> Float[np.ndarray, " T"]:
-    """The stand-in where the channel was faulty or silent, with one sample either side to tie it to the signal."""
+    """The stand-in where the channel was faulty or missing, and one row on either side to join it to the signal."""
     value, repaired = detection.log.value[:, column], detection.repaired[:, column]
     mask = (detection.channel[:, column] == FAULT) | (~np.isfinite(value) & np.isfinite(repaired))
     wide = mask.copy()

@@ -50,7 +50,7 @@ def _trace(bars: Sequence[Bar], look: Json, lift: float) -> Json:
 
 
 def _truth(sketch: Sketch, truth: Sequence[Fault]) -> list[Json]:
-    """The injected faults as thin lines above the bands; a missed one hollow, with a cross."""
+    """The injected faults as thin lines above the bands; a missed fault is hollow, with a cross."""
     lane = {name: i for i, (name, _) in enumerate(sketch.lanes)}
     hits: list[Bar] = []
     misses: list[Bar] = []
@@ -84,7 +84,7 @@ def _label(lane: int, name: str) -> Json:
 
 
 def verdicts(sketch: Sketch, truth: Sequence[Fault] = ()) -> Json:
-    """One band a sensor, top to bottom in the order of the log."""
+    """The figure of verdicts: one band for each sensor, in the order of the log."""
     bars = _bars(sketch)
     data = [_trace([bar for code, bar in bars if code == verdict], look, 0.24) for verdict, look in LOOKS.items()]
     names = [_label(i, name) for i, (name, _) in enumerate(sketch.lanes)]

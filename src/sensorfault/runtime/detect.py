@@ -1,4 +1,4 @@
-"""A model and a log: verdicts and fault events, from a file or live."""
+"""Judge a log, or live samples, with a fitted model: verdicts and fault events."""
 
 from typing import Any
 
@@ -35,13 +35,13 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
 
 
 class Live:
-    """A fitted model on a vehicle: one sample in, one verdict out, events as they end.
+    """A fitted model on a running vehicle: one sample in, one verdict out.
 
     >>> live = Live(model)
     >>> now = live.push(0.02, [0.01, 0.0, 0.12, 0.3, -0.1, 9.8])
     >>> now.sample  # 0 ok, 1 unknown, 2 fault
 
-    `events` are those that have ended; `open()` those that go on.
+    `events` are those that have ended; `open()` returns those that are ongoing.
     """
 
     def __init__(self, model: Model) -> None:
@@ -59,16 +59,22 @@ class Live:
         self._now = nothing_yet(model.monitor)
         self._begun = False
         self._time: float | None = None
-        self._epoch: float | None = None  # when the last one ended
+        self._epoch: float | None = None  # when the last one ended [s]
 
     def push(self, time: float, value: Any, fresh: Any = None) -> StepResult:
-        """Judge one sample: `time` [s], rising; `value` in SI in the order of `model.inputs`, NaN if absent.
+        """Judge one sample.
 
-        `fresh` marks new measurements; left out, a held sensor is new when one of its channels has changed. Where the
-        model judges epochs, a sample that ends none is answered with what was said of the last.
+        Args:
+            time: [s], greater than that of the sample before.
+            value: one for each of `model.inputs`, in their order, in SI units; NaN if absent.
+            fresh: which values are new measurements, one for all or one each. By default a held sensor's values are new
+                if one of its channels has changed, and all others are new.
+
+        Returns:
+            The verdicts on this sample. If the model judges epochs and this sample ends none, those on the last epoch.
 
         Raises:
-            ValueError: time did not rise, or the number of values is not that of the model's channels.
+            ValueError: time did not rise, or there are not as many values as the model has inputs.
         """
         if len(value) != len(self._fresh):
             width = len(self._fresh)
@@ -93,7 +99,7 @@ class Live:
         self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()
     ) -> StepResult:
         now = self._step.push(time, value, fresh, block)
-        # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
+        # The tracker can skip a row without fault, silence or hole before it while no event is open.
         silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()
         if FAULT in (now.sample, now.motion) or silent or not self._begun or self._tracker.busy():
             self._begun = True
@@ -101,7 +107,7 @@ class Live:
         return now
 
     def open(self) -> list[Event]:
-        """Events that go on; their end_s is None."""
+        """Ongoing events; their end_s is None."""
         return self._tracker.open()
 
     def _changed(self, value: Float[np.ndarray, " C"]) -> Bool[np.ndarray, " C"]:

@@ -12,7 +12,7 @@ from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Progress, Replayed, replay_on
 from sensorfault.runtime.result import Detection, detected
 
-See = Callable[[Detection, float], None]  # a part that was judged, with all events so far; its share of the log
+See = Callable[[Detection, float], None]  # a part that was judged, with all events so far; its share of what is judged
 
 
 class Detector:
@@ -31,7 +31,9 @@ class Detector:
         self._last: tuple[Log, Replayed] | None = None  # the last part
 
     def take(self, part: Log, share: float = 1.0, progress: Progress | None = None) -> None:
-        """Judge the next part, which is `share` of the log. `progress` gets the share of the part that is done.
+        """Judge the next part.
+
+        `share`: how much of all that is judged it is. `progress` gets the share of the part that is done.
 
         Raises:
             LogError: the part is empty, lacks a channel of the model, or is sampled at another rate.

@@ -1,4 +1,4 @@
-"""A whole log through a monitor, chunk by chunk: one compilation for every length, bounded memory, progress."""
+"""Run a monitor over a log in chunks of fixed length: compiled once for logs of any length."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -17,15 +17,15 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.numerics.packing import pack, unpack
 from sensorfault.runtime.runners import samples
 
-CHUNK = 8192
-EPOCHS = 512  # of a log with a block, whose rows are long and few
+CHUNK = 8192  # rows
+EPOCHS = 512  # rows a chunk of a log with a block, whose rows are long and few
 
 Progress = Callable[[float], None]
-Numbers = np.ndarray | Array  # on the device while it runs, NumPy afterwards
+Numbers = np.ndarray | Array  # a JAX array while it runs, NumPy afterwards
 
 
 class Replayed(NamedTuple):
-    """What a replay keeps of every sample, stacked over time. Scores are NaN where a test had nothing to test."""
+    """What a replay keeps of each of T rows: C channels, S sensors, K tests. Scores are NaN without a test."""
 
     channel: Int8[Numbers, "T C"]
     sensor: Int8[Numbers, "T S"]
@@ -36,7 +36,7 @@ class Replayed(NamedTuple):
     residual: Float[Numbers, "T C"]
     valid: Bool[Numbers, "T C"]
     value: Float[Numbers, "T C"]  # measured, or its stand-in [SI]
-    believed: Bool[Numbers, "T C"]  # whether `value` may be believed
+    believed: Bool[Numbers, "T C"]  # whether `value` can be trusted
     silence: Float[Numbers, "T C"]
 
 
@@ -60,7 +60,7 @@ def _keep(report: Report) -> Replayed:
 def _chunk(
     monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"]
 ) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]]]:
-    """What is kept of each row, packed; rows beyond the log's end (`real` False) leave the state alone."""
+    """What is kept of each row, packed; rows after the log's end (`real` False) do not change the state."""
 
     def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, tuple[Array, Array]]:
         sample, real = row
@@ -72,18 +72,18 @@ def _chunk(
     return done
 
 
-def _told(monitor: Monitor, state: MonitorState, sample: Sample) -> Replayed:
+def _kept_of(monitor: Monitor, state: MonitorState, sample: Sample) -> Replayed:
     return _keep(monitor.step(state, sample)[1])
 
 
 def _strong(tree: tuple[Monitor, MonitorState]) -> tuple[Monitor, MonitorState]:
-    """Without weak types, which would compile the same step again."""
+    """The same without weak types, which would make JAX compile the same step again."""
     made: tuple[Monitor, MonitorState] = jax.tree.map(lambda x: jnp.asarray(x, jnp.result_type(x)), tree)
     return made
 
 
 def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> Replayed:
-    """Judge every row of a log, from a fresh start. `progress` is told the share done, 0 to 1.
+    """Judge every row of a log; the monitor starts anew. `progress` gets the share done, 0 to 1.
 
     Raises:
         LogError: the log is empty.
@@ -94,7 +94,7 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
 def replay_on(
     monitor: Monitor, state: MonitorState, log: Log, progress: Progress | None = None
 ) -> tuple[MonitorState, Replayed]:
-    """The same from any state, as after the part of the log before this one; and the state after it.
+    """Judge every row of a log from a given state, such as that after the previous part. Returns the state after it.
 
     Raises:
         LogError: the log is empty.
@@ -113,5 +113,5 @@ def replay_on(
         result.append([np.asarray(part) for part in kept])
         if progress:
             progress(min(1.0, (start + long) / total))
-    example: Replayed = jax.eval_shape(_told, monitor, state, jax.tree.map(lambda x: x[0], chunk))
+    example: Replayed = jax.eval_shape(_kept_of, monitor, state, jax.tree.map(lambda x: x[0], chunk))
     return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*result, strict=True)))

@@ -35,7 +35,7 @@ def detect_file(
         path: the file, of a format that `read_parts` reads.
         vehicle: as for `read`.
         tell: gets the share of the file that has been read, 0 to 1.
-        see: gets each part that was judged, with all events so far, and the share of the file that the part is.
+        see: gets each part that was judged, with all events so far, and its share of what is judged in all.
         learn: share of the file to fit on, if `model` is what fits one.
 
     Raises:
@@ -95,7 +95,7 @@ class _Run:
         self._fit: Fit = model if not isinstance(model, Model) else lambda log: model
         self._early: list[Log] = []
         self._fitted_on_s: tuple[float, float] | None = None
-        self._read = self._judged = 0.0  # shares of the log
+        self._read = self._judged = self._fitted = 0.0  # shares of the log
         if isinstance(model, Model):
             self._detector = self._detector_of(model)
 
@@ -125,12 +125,12 @@ class _Run:
         early = log.between(end_s=cut_s)
         self._detector = self._detector_of(self._fit(early))
         self._fitted_on_s = float(log.time[0]), cut_s
-        self._judged = share * len(early) / len(log)
+        self._judged = self._fitted = share * len(early) / len(log)
         self._judge(self._detector, log.between(cut_s), share)
         return self._detector
 
     def _judge(self, detector: Detector, part: Log, read: float) -> None:
-        detector.take(part, read - self._judged, self._progress)
+        detector.take(part, (read - self._judged) / (1 - self._fitted), self._progress)
         self._judged = read
 
     def _detector_of(self, model: Model) -> Detector:
