@@ -50,6 +50,7 @@ def test_of_a_log_in_parts_the_rows_that_are_not_kept_are_a_sentence() -> None:
     np.testing.assert_array_equal(detection.log.time, whole.log.time[[0, -1]])
     assert detection.notes == ("The file breaks off.", "Guessed.", *whole.notes)
     assert not detection.whole
+    assert detection.period_s == pytest.approx(whole.period_s) == pytest.approx(1 / fitted.HZ)
     assert len(PER_ROW) == 6
     for name in PER_ROW:
         assert not hasattr(detection, name)

@@ -8,7 +8,7 @@ from sensorfault.cli import options, show
 @click.command("methods")
 @options.json_option
 def command(json_path: str | None) -> None:
-    """List the methods, their parts and their sources; with --json also the false-alarm rate each is set for."""
+    """List the methods: what they are made of, where they come from; with --json, their false-alarm rates."""
     from sensorfault.methods.catalog import METHODS
 
     if json_path != "-":

@@ -54,7 +54,7 @@ _Accused = int | str | None  # a channel, MOTION, or nobody known
 
 @dataclass(frozen=True)
 class _Ended:
-    """A fault that is over, or reported while it is ongoing."""
+    """A fault that is over, or told of while it goes on."""
 
     accused: _Accused
     open: _Open
@@ -80,7 +80,7 @@ def _about(test: tuple[int, ...] | str | None, accused: _Accused) -> bool:
 
 
 class Tracker:
-    """Turns rows into events, one after the other. A healthy row changes nothing while no event is open."""
+    """Turns one row after the other into events. A healthy row while nothing is open changes nothing."""
 
     def __init__(self, watch: EventContext) -> None:
         self._watch = watch
@@ -186,7 +186,7 @@ class Tracker:
             self._holes.append((time, gap_s))
         self._holes = [hole for hole in self._holes if hole[0] > time - silence.max()]
         for end, length in self._holes:
-            # No row came in a hole: a sensor that was measured before it was not silent in it.
+            # No tick came in a hole: who was heard before it was not silent in it.
             silence = silence - np.where(time - silence < end, length, 0.0)
         silent = silence > self._watch.silent_after_s
         missing: dict[tuple[str, str | None], tuple[float, float, float]] = {}
