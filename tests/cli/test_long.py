@@ -63,10 +63,10 @@ def test_without_a_model_it_is_fitted_on_the_beginning(run: Run, drive: Path, mo
     monkeypatch.setattr(csv, "_PART_BYTES", 50_000)
     run("inject", drive, "--fault", "offset:accelerometer.x:60:5:9", "--out", "lying.csv")
     said = run("detect", "lying.csv", "--by-parts", "--method", "pca", "--json", "-", "--report", "page.html")
-    assert "pca was fitted on the log's own beginning, 0:00.00 to" in said.err
-    assert "taken as healthy" in Path("page.html").read_text()
+    assert "pca was fitted on 0:00.00 to" in said.err
+    assert "assumed healthy" in Path("page.html").read_text()
     result = json.loads(said.out)
-    assert result["fitted_on_s"][1] == result["judged_s"][0] < 60
+    assert 0 < result["fitted_on_s"][1] <= result["judged_s"][0] < 60
     assert ("accelerometer", "offset") in [(event["sensor"], event["kind"]) for event in result["events"]]
 
 

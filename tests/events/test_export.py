@@ -178,10 +178,10 @@ def test_without_a_clock_of_the_world_times_count_from_zero(tmp_path: Path) -> N
 
 
 def test_what_cannot_be_written(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match=r"not as '\.xlsx'; change the name"):
+    with pytest.raises(LogError, match=r"not as '\.xlsx'; give another name"):
         write_events(EVENTS, log(), tmp_path / "events.xlsx")
     (tmp_path / "there").mkdir()
-    with pytest.raises(LogError, match="is there already"):
+    with pytest.raises(LogError, match="exists already"):
         write_events(EVENTS, log(), tmp_path / "there")
 
 

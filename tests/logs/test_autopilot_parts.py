@@ -17,7 +17,7 @@ from sensorfault.logs.readers import dataflash_load
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Tables
 from sensorfault.runtime.detect import detect
-from sensorfault.runtime.streaming import detect_long
+from sensorfault.runtime.streaming import detect_file
 
 CONTENT = {
     ".ulg": written_ulog.flight(20.0),
@@ -171,7 +171,7 @@ def test_the_events_are_those_of_the_whole(tmp_path: Path, suffix: str) -> None:
     vehicle = VehicleFile.parse(written_rig.VEHICLE)
     whole = detect(fitted.model(), read(path, vehicle)).events
     with small_parts(5000):
-        result = detect_long(fitted.model(), path, vehicle).events
+        result = detect_file(fitted.model(), path, vehicle).events
     assert len(result) == len(whole) > 5
     for mine, theirs in zip(result, whole, strict=True):
         assert (mine.sensor, mine.channel, mine.kind) == (theirs.sensor, theirs.channel, theirs.kind)

@@ -6,7 +6,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from sensorfault.cli import cli, work
+from sensorfault.cli import cli, reading
 from sensorfault.logs import VehicleFile, guess, read
 from sensorfault.logs.readers import formats
 from sensorfault.logs.readers.formats import Format, format_of
@@ -56,7 +56,7 @@ def test_damage_is_told_once_and_kept_apart(odd: Path, capsys: pytest.CaptureFix
     assert log.notes.count(log.damage[0]) == 1
     assert log.notes.count("log.odd: topics of unknown type left out: /x.") == 1
     assert guess(odd).notes[:2] == (log.damage[0], "log.odd: topics of unknown type left out: /x.")
-    work.read_log(odd, None)
+    reading.read_log(odd, None)
     assert capsys.readouterr().err.count("breaks off at byte 7") == 1
 
 

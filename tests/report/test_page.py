@@ -21,8 +21,8 @@ from sensorfault.report import page
 from sensorfault.report.page import write_page
 from sensorfault.report.page_lines import extremes, line, near, runs
 from sensorfault.report.page_sketch import Sketch, replaced, stale
-from sensorfault.report.page_words import clock, found, headline
-from sensorfault.runtime.result import Detection, Trace
+from sensorfault.report.page_words import found, headline
+from sensorfault.runtime.result import Detection, RowsNotKept, Trace
 
 RATE = 50
 
@@ -252,7 +252,7 @@ def test_gathered_part_by_part_it_is_the_same():
             traces=tuple(replace(t, score=t.score[rows], limit=t.limit[rows]) for t in detection.traces),
             events=tuple(event for event in detection.events if event.start_s < (start + 500) / RATE),
         )
-        parts = parts or Sketch(part)
+        parts = parts or Sketch()
         parts.take(part, 1 / 6)
     assert (parts.rows, parts.span, parts.events) == (whole.rows, whole.span, whole.events)
     assert [(name, lane.start, lane.verdict) for name, lane in parts.lanes] == [
@@ -261,17 +261,36 @@ def test_gathered_part_by_part_it_is_the_same():
     for mine, theirs in zip(parts.channels, whole.channels, strict=True):
         tied = np.isin(theirs.stand_in.x, mine.stand_in.x, invert=True)
         assert tied.sum() <= 2  # but for the sample before or after, where that is in another part
-        for name in ("said", "held"):
+        for name in ("measured", "held"):
             np.testing.assert_array_equal(getattr(mine, name).x, getattr(theirs, name).x)
             np.testing.assert_array_equal(getattr(mine, name).y, getattr(theirs, name).y)
     assert [test.spans_much for test in parts.tests.values()] == [test.spans_much for test in whole.tests.values()]
 
 
+def test_a_page_of_a_log_in_parts_needs_its_sketch(tmp_path):
+    detection = drive()
+    ends = detection.log._rows([0, -1])
+    bare = detection.without_rows(replace(ends, notes=("Read in parts.",)), 3000)
+    with pytest.raises(RowsNotKept, match="was judged in parts"):
+        write_page(bare, tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
+    write_page(bare, tmp_path / "page.html", sketch=Sketch.of(detection))
+    seen = Page((tmp_path / "page.html").read_text("utf-8"))
+    assert "3,000 samples" in seen.text
+    assert "Read in parts." in seen.text
+    assert seen.figures == figures(detection)
+
+
+def test_a_sketch_of_fewer_points():
+    few, many = (Sketch.of(replace(drive(6000), events=()), points) for points in (1000, 100_000))
+    assert 5 * few.channels[0].measured.x.size < many.channels[0].measured.x.size
+
+
 def test_a_short_part_has_few_points():
     detection = drive(6000)
-    sketch = Sketch(detection)
+    sketch = Sketch()
     sketch.take(replace(detection, events=()), 0.001)
-    assert sketch.channels[0].said.x.size < 100
+    assert sketch.channels[0].measured.x.size < 100
 
 
 # What the page says
@@ -290,7 +309,7 @@ def test_page_is_one_file_that_asks_nobody(tmp_path):
 def test_headline_and_notes(tmp_path):
     seen = written(tmp_path, drive(), summary=("Fitted on the first 20 s.",))
     text = seen.text
-    assert "2 faults on 1 sensor; 1 sensor watched, gnss not judged (only its silence is noticed)." in text
+    assert "2 faults on 1 sensor; 1 sensor watched, gnss checked for dropouts only." in text
     assert "duration 0:59.98 · 3,000 samples at 50 Hz · 2 sensors · 3 channels · method elm" in text
     assert "gnss repeats 80 % of its rows." in text
     assert "Fitted on the first 20 s." in text
@@ -300,22 +319,22 @@ def test_headline_and_notes(tmp_path):
 def test_a_channel_that_is_not_judged_says_so(tmp_path):
     half = replace(drive(), watched=(True, False, False))
     seen = written(tmp_path, half)
-    assert "2 faults on 1 sensor; 1 sensor watched, gnss not judged" in seen.text
-    assert " ".join(seen.words).count("not judged, only its silence is noticed") == 1  # beside gnss
+    assert "2 faults on 1 sensor; 1 sensor watched, gnss checked for dropouts only." in seen.text
+    assert " ".join(seen.words).count(" checked for dropouts only") == 2  # beside gnss
     labels = [a["text"] for a in seen.figures["signals-0"]["layout"]["annotations"] if "<b>" in a["text"]]
-    assert labels == ["<b>x</b> [deg/s]", "<b>z</b> [deg/s] not judged, only its silence is noticed"]
+    assert labels == ["<b>x</b> [deg/s]", "<b>z</b> [deg/s], checked for dropouts only"]
     none = written(tmp_path, replace(drive(), watched=(False,) * 3)).text
-    assert "no sensors watched, gyro, gnss not judged (only their silence is noticed)" in none
+    assert "no sensors watched, gyro, gnss checked for dropouts only." in none
 
 
 def test_events_without_a_sensor_are_told_apart(tmp_path):
     nameless = Event(1.0, 2.0, "sensor", None, None, "unknown", 5.0, 1.0, "elm")
     events = (nameless, replace(nameless, subject="motion"), replace(nameless, kind="missing"))
     detection = replace(drive(), events=events)
-    said = "1 fault, 1 of them not laid to one sensor, 1 implausible motion, 1 gap in the log; 1 sensor watched"
+    said = "1 fault, 1 of them on an unknown sensor, 1 implausible motion, 1 gap in the log; 1 sensor watched"
     assert headline(Sketch.of(detection)).startswith(said)
     rows = written(tmp_path, detection).rows
-    assert [row[3] for row in rows] == ["unknown which", "vehicle motion", "all (gap in the log)"]
+    assert [row[3] for row in rows] == ["unknown which", "vehicle motion", "the whole log"]
     assert [row[6] for row in rows] == ["5 / 1", "5 / 1", "5 / 1 s silent"]
 
 
@@ -323,7 +342,7 @@ def test_event_rows_zoom_to_their_time(tmp_path):
     seen = written(tmp_path, drive())
     assert seen.rows == [
         ["1", "10.00 s ", "10.00 s ", "gyro", "z", "spike", "9.5 / 3", "elm"],
-        ["2", "30.00 s ", "lasts", "gyro", "x", "offset", "7.25 / 3", "elm"],
+        ["2", "30.00 s ", "ongoing", "gyro", "x", "offset", "7.25 / 3", "elm"],
     ]
     times = [(float(attrs["data-from"]), float(attrs["data-to"])) for tag, attrs in seen.tags if "data-from" in attrs]
     assert times == [(10.0, 10.0), (30.0, pytest.approx(59.98))]
@@ -355,14 +374,6 @@ def test_found_under_another_name_says_so(tmp_path):
     near_miss = Event(9.0, 11.0, "sensor", "gyro", "x", "spike", 9.5, 3.0, "elm")
     detection = replace(drive(), events=(near_miss, *drive().events))
     assert [row[-1] for row in written(tmp_path, detection, truth).rows[3:]] == ["found", "found as offset of x"]
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(0.0, "0:00.00"), (59.999, "1:00.00"), (102.3, "1:42.30"), (3725.5, "1:02:05.50"), (-1.0, "−0:01.00")],
-)
-def test_clock(seconds, text):
-    assert clock(seconds) == text
 
 
 # What the plots hold
@@ -458,7 +469,7 @@ def test_log_without_faults_and_tests(tmp_path):
     assert "scores" not in seen.figures
 
 
-def test_log_of_one_row_that_never_spoke(tmp_path):
+def test_log_of_one_row_without_data(tmp_path):
     log = Log(
         np.zeros(1), np.full((1, 1), np.nan), np.zeros((1, 1), dtype=bool), (Channel("x", "a"),), (Sensor("a", np.nan),)
     )
@@ -467,7 +478,7 @@ def test_log_of_one_row_that_never_spoke(tmp_path):
         tmp_path, Detection(log, "pca", (False,), verdict, verdict, verdict[:, 0], still(1), log.value, (), ())
     )
     assert seen.figures["signals-0"]["data"] == []
-    assert "never spoke" in seen.figures["signals-0"]["layout"]["annotations"][0]["text"]
+    assert "has no data" in seen.figures["signals-0"]["layout"]["annotations"][0]["text"]
     assert seen.figures["verdicts"]["layout"]["xaxis"]["range"] == [-0.5, 0.5]
 
 

@@ -238,7 +238,7 @@ def test_a_log_of_other_channels() -> None:
 @pytest.mark.parametrize("factor", [0.2, 0.49, 2.1, 50.0])
 def test_a_log_of_another_rate(factor: float) -> None:
     log = fitted.unseen()
-    assert "fit a model on a log of this rate" in sentence(replace(log, time=log.time * factor))
+    assert "fit a model on a log of the same rate" in sentence(replace(log, time=log.time * factor))
 
 
 @pytest.mark.parametrize("factor", [0.55, 1.9])

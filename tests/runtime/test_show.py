@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import fitted
-from sensorfault.core.clock import clock
+from sensorfault.core.times import clock
 from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Channel, Sensor

@@ -26,11 +26,11 @@ class _Verbs(UserDict[str, click.Command]):
 )
 @click.version_option(package_name="sensorfault")
 def cli() -> None:
-    """Notice when a vehicle's sensor lies, name it and the kind of fault.
+    """Find faulty sensors of a vehicle: which sensor and channel, when, and what kind of fault.
 
     Start with `sensorfault demo`, or with a log of your own: `sensorfault init LOG`, then `sensorfault detect LOG`.
     LOG is a file (PX4 .ulg, ArduPilot .bin, .log or .tlog, ROS .bag, .db3 or .mcap, CSV, Parquet, MATLAB, NumPy, GNSS
-    formats), or a folder of such files of one drive. `sensorfault info LOG` says what it holds.
+    formats), or a folder of such files of one drive. `sensorfault info LOG` lists what it holds.
     """
 
 

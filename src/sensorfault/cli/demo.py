@@ -1,25 +1,29 @@
-"""`sensorfault demo`: the main job, on a drive or a flight that it simulates."""
+"""`sensorfault demo`: detection on a simulated drive or flight."""
 
 from pathlib import Path
 
 import click
 from click.core import ParameterSource
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import detecting, limits, options, show
 
 
 @click.command("demo")
 @options.out_option("demo", "The folder to write log, model, truth and page to.")
-@click.option("--flight", is_flag=True, help="A flight of a flapping wing; by default with height-agreement.")
+@click.option(
+    "--flight",
+    is_flag=True,
+    help="Simulate a flight of a flapping wing; default method: height-agreement.",
+)
 @options.method_option
 @options.seed_option
 @options.json_option
 @click.pass_context
 def command(context: click.Context, out: Path, flight: bool, method: str, seed: int, json_path: str | None) -> None:
-    """Simulate a 10-minute drive, let its sensors lie, and find out.
+    """Simulate a 10-minute drive, inject sensor faults, and detect them.
 
-    Paper A's four kinds of fault: short, bias, jam and miss (Min et al. 2021), in the part of the drive that the method
-    was not fitted on. With --flight a 20-minute flight, on which the receiver's height drifts and jumps.
+    The faults are spikes, offsets, frozen and missing values (Min et al. 2021), in the part of the drive that the
+    method was not fitted on. With --flight, a 20-minute flight on which the receiver's height drifts and jumps.
     """
     from sensorfault.cli.scenarios import DRIVE, FLIGHT
     from sensorfault.core.extras import require
@@ -51,11 +55,11 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     write(injected.log, out / f"{scenario.words}.csv")
     (out / f"{scenario.words}.truth.json").write_text(truth_to_json(injected.truth) + "\n")
     save(model, out / f"{scenario.vehicle}.sensorfault")
-    found = work.detect(model, judged, "judging the rest, sensors lying")
+    found = detecting.detect(model, judged, "judging the rest, with faults")
     sentences = (
         f"Fitted by {method} on the first {scenario.learn_s / 60:.0f} minutes.",
-        *work.rate(model),
-        *work.not_watched(model),
+        *limits.rate(model),
+        *limits.not_watched(model),
     )
     write_page(
         found, out / "report.html", injected.truth, f"Simulated {scenario.words} with injected faults", sentences
@@ -68,10 +72,10 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
     false_isolations = sum(outcome.false_isolations for outcome in verdict.outcomes)
     show.say(
         f"\n{seen} of {len(verdict.outcomes)} injected faults found, {right} with sensor, channel and kind right; "
-        f"{false_isolations} events on healthy channels meanwhile, {len(verdict.false_alarms)} false alarms in "
+        f"{false_isolations} events on healthy channels during the faults, {len(verdict.false_alarms)} false alarms in "
         f"{verdict.healthy_hours * 60:.1f} healthy minutes."
     )
-    for sentence in work.not_watched(model):
+    for sentence in limits.not_watched(model):
         show.say(sentence)
-    show.say(f"Open {out / 'report.html'}; the log, the truth and the model lie beside it.")
+    show.say(f"Open {out / 'report.html'}; the log, the truth and the model are beside it.")
     show.write_json(json_path, {"events": [event.as_dict() for event in found.events]})

@@ -1,16 +1,10 @@
 """`sensorfault detect`: the faults of a log."""
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import long, options, show, work
-
-if TYPE_CHECKING:
-    from sensorfault.events.event import Event
-    from sensorfault.logs import Log
+from sensorfault.cli import answer, detecting, fitting, limits, options, outputs, show
 
 
 @click.command("detect")
@@ -24,8 +18,8 @@ if TYPE_CHECKING:
     "outs",
     type=click.Path(path_type=Path),
     multiple=True,
-    help="Also write the events: .jsonl, .csv or .parquet; .mcap, annotations for viewers (with the log's messages, "
-    "if it is an .mcap); .bag (ROS 1) or a new folder (ROS 2) of DiagnosticArray. May be given several times.",
+    help="Also write the events: .jsonl, .csv or .parquet; .mcap with annotations for viewers (and the log's messages, "
+    "if the log is an .mcap); .bag (ROS 1) or a new folder (ROS 2) with DiagnosticArray. May be given several times.",
 )
 @options.by_parts_option
 @click.option("--report", "report_path", type=click.Path(path_type=Path), help="Also write a report page (HTML).")
@@ -45,39 +39,27 @@ def command(
 ) -> None:
     """List the faults of a log: when, which sensor and channel, what kind.
 
-    Without --model the method is fitted on the log's own beginning, which is then taken as healthy; of a long log
-    that is read part by part, on no more than four million numbers.
+    Without --model, the first half of the log is assumed healthy to fit the method, and the second half is checked.
+    --learn changes that share. Of a long log read part by part, no more than four million numbers are used for the fit.
     """
     from sensorfault.core.extras import require
-    from sensorfault.events.export import check
+    from sensorfault.events.export import check, write_events
+    from sensorfault.report.page import write_page
+    from sensorfault.report.page_sketch import Sketch
 
     for out in outs:
         check(out)
     if report_path is not None:
         require("a report page", "plotly")
-    work.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
-    if long.by_parts(log, by_parts):
-        result = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), report_path)
-        _write(result.events, result.log, log, outs, json_path)
-        show.write_json(json_path, long.answer(result))
-        return
-    table = work.read_log(log, vehicle)
-    ready = work.ready(table, model_path, method, learn, seed)
-    found = work.detect(ready.model, ready.judged)
-    _write(found.events, found.log, log, outs, json_path)
-    if report_path is not None:
-        from sensorfault.report.page import write_page
-
-        write_page(found, report_path, summary=ready.sentences)
-        show.say(f"Wrote {report_path}.")
-    show.write_json(json_path, work.answer(ready.model, found.log, table.notes, ready.fitted_on_s, found.events))
-
-
-def _write(events: "Sequence[Event]", table: "Log", log: Path, outs: Sequence[Path], json_path: str | None) -> None:
-    """The events as a table, and to the files asked for."""
-    from sensorfault.events.export import write_events
-
-    show.events(events, f"Faults in {table.name}", answer=json_path != "-")
+    outputs.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
+    choice = fitting.Choice(model_path, method, learn, seed)
+    sketch = Sketch() if report_path else None
+    found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take if sketch else None)
+    show.events(found.events, f"Faults in {found.log.name}", answer=json_path != "-")
     for out in outs:
-        write_events(events, table, out, log if log.suffix.lower() == ".mcap" else None)
+        write_events(found.events, found.log, out, log if log.suffix.lower() == ".mcap" else None)
         show.say(f"Wrote {out}.")
+    if report_path is not None:
+        write_page(found, report_path, summary=limits.of_detection(found), sketch=sketch)
+        show.say(f"Wrote {report_path}.")
+    show.write_json(json_path, answer.of_detection(found))

@@ -1,8 +1,8 @@
-"""Which errors are the user's to mend, and their one sentence."""
+"""Which errors a user can fix, and the sentence to print for them."""
 
 
 def sentence_of(error: Exception, what: str = "this command") -> str | None:
-    """The sentence of a bad input or a missing extra, or None for an error that is ours and deserves its traceback.
+    """The sentence for bad input or a missing extra; None for a bug, whose traceback is needed.
 
     `what`: what the user ran, for a sentence that says what needs the extra.
     """

@@ -1,10 +1,10 @@
-"""`sensorfault fit`: a healthy log in, a model file out."""
+"""`sensorfault fit`: fit a model on a healthy log."""
 
 from pathlib import Path
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import limits, options, outputs, reading, show
 
 
 @click.command("fit")
@@ -13,11 +13,16 @@ from sensorfault.cli import options, show, work
 @options.method_option
 @options.out_option(None, "The model file to write.  [default: NAME.sensorfault here]")
 @click.option("--until", "until_s", type=float, help="Use the log only up to this time [s].")
-@click.option("--held-out", default=0.3, show_default=True, help="Share, from the end, to judge instead of fit.")
+@click.option(
+    "--held-out",
+    default=0.3,
+    show_default=True,
+    help="Share of the log, at its end, to count false alarms on.",
+)
 @click.option(
     "--checkpoint",
     type=click.Path(path_type=Path),
-    help="For methods trained by epochs: written after each epoch, gone on from if it is there.",
+    help="For methods trained by epochs: a file that is saved after every epoch, and resumed from if present.",
 )
 @options.seed_option
 @options.json_option
@@ -32,14 +37,14 @@ def command(
     seed: int,
     json_path: str | None,
 ) -> None:
-    """Fit a method on a healthy log and measure its false alarms on the part held out."""
+    """Fit a method on a healthy log, and count its false alarms on the part held out."""
     from sensorfault.methods.catalog import recipe
     from sensorfault.methods.fit import fit
     from sensorfault.runtime.store import save
 
     recipe(method)
-    work.check_outputs([out, json_path, checkpoint], [log, vehicle])
-    table = work.read_log(log, vehicle)
+    outputs.check_outputs([out, json_path, checkpoint], [log, vehicle])
+    table = reading.read_log(log, vehicle)
     if until_s is not None:
         table = table.between(end_s=until_s)
     with show.progress() as bar:
@@ -49,8 +54,8 @@ def command(
     target = out or Path(f"{table.name}.sensorfault")
     save(model, target)
     watched = [c.path for c, w in zip(model.channels, model.watched, strict=True) if w]
-    show.say(work.watches(watched))
-    for sentence in (*work.suspects(model), *work.not_watched(model), *work.smallest(model), *work.rate(model)):
+    show.say(limits.watches(watched))
+    for sentence in (*limits.suspects(model), *limits.not_watched(model), *limits.smallest(model), *limits.rate(model)):
         show.say(sentence)
     show.say(f"Wrote {target}.")
     show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})

@@ -1,16 +1,16 @@
-"""`sensorfault info`: what a log holds, and which methods can watch it."""
+"""`sensorfault info`: what a log holds, and which methods apply to it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import long, options, show, work
+from sensorfault.cli import cells, options, outputs, reading, show
+from sensorfault.core.times import clock
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
-    from sensorfault.logs.joining import Said
-    from sensorfault.logs.summary import SensorSummary, Summing
+    from sensorfault.logs.summary import SensorSummary
 
 _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at", "held %")
 
@@ -21,17 +21,19 @@ _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at",
 @options.by_parts_option
 @options.json_option
 def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: str | None) -> None:
-    """Say what a log holds: sensors, rates, gaps, held values; which methods can watch it, and why others cannot.
+    """List what a log holds: sensors, rates, gaps, held values; which methods apply to it, and why others do not.
 
-    Nothing is fitted: a method that seems to apply may still find, when it is fitted, that the log has too little of
-    something.
+    Nothing is fitted. A method that seems to apply may still turn out to need more data when it is fitted.
     """
     from dataclasses import asdict
 
-    work.check_outputs([json_path], [log, vehicle])
-    summing, said = long.summed(log, vehicle) if long.by_parts(log, by_parts) else _whole(log, vehicle)
+    from sensorfault.logs.summary import Summing
+
+    outputs.check_outputs([json_path], [log, vehicle])
+    summing = Summing()
+    said = reading.read_in(reading.in_parts(log, by_parts), log, vehicle, summing.take)
     table, sensors = summing.first, summing.sensors
-    assert table is not None
+    assert table is not None  # a log without a row is an error
     applies, lacking, without = _methods(table)
     answer = json_path != "-"
     show.table(f"Sensors of {table.name}", _COLUMNS, [_row(one) for one in sensors], answer, right=("gaps", "at"))
@@ -53,18 +55,8 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
     show.write_json(json_path, result)
 
 
-def _whole(path: Path, vehicle: Path | None) -> "tuple[Summing, Said]":
-    """The log as one part."""
-    from sensorfault.logs.joining import Said
-    from sensorfault.logs.summary import Summing
-
-    log, summing = work.read_log(path, vehicle), Summing()
-    summing.take(log)
-    return summing, Said(log.notes, log.damage)
-
-
 def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[str, str]]]:
-    """Methods that the log allows, reasons against the others, and parts that the first have to do without."""
+    """Methods that apply, why others do not, and which parts of the first cannot run."""
     from sensorfault.methods.catalog import METHODS
 
     lacking = {name: reason for name, recipe in METHODS.items() if (reason := recipe.lacks(table))}
@@ -73,7 +65,7 @@ def _methods(table: "Log") -> tuple[list[str], dict[str, str], dict[str, dict[st
 
 
 def _by_reason(lacking: dict[str, str]) -> dict[str, list[str]]:
-    """Each reason once, with all methods that it holds against."""
+    """Each reason once, with all methods that do not apply for that reason."""
     methods: dict[str, list[str]] = {}
     for name, reason in lacking.items():
         methods.setdefault(reason, []).append(name)
@@ -85,10 +77,10 @@ def _row(sensor: "SensorSummary") -> tuple[str, ...]:
     return (
         sensor.name,
         ", ".join(f"{channel} [{unit}]" if unit else channel for channel, unit in units),
-        show.number(sensor.rate_hz),
+        cells.number(sensor.rate_hz),
         str(sensor.measurements),
         str(sensor.gaps),
-        show.number(sensor.longest_gap_s),
-        "" if sensor.gap_at_s is None else show.clock(sensor.gap_at_s),
-        show.percent(sensor.held) if sensor.held else "",
+        cells.number(sensor.longest_gap_s),
+        "" if sensor.gap_at_s is None else clock(sensor.gap_at_s),
+        cells.percent(sensor.held) if sensor.held else "",
     )

@@ -1,4 +1,4 @@
-"""`sensorfault init`: a starter vehicle.toml from an unknown log."""
+"""`sensorfault init`: write a first vehicle.toml for an unknown log."""
 
 from pathlib import Path
 
@@ -13,14 +13,14 @@ from sensorfault.cli import options, show
 @click.option("--force", is_flag=True, help="Replace an existing file.")
 @options.json_option
 def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> None:
-    """Look at an unknown log and write a vehicle.toml to check and correct.
+    """Write a vehicle.toml for an unknown log, to be checked and corrected.
 
-    Every line is a guess from names and values and says why it was made.
+    Every line is a guess from names and values, with its reason.
     """
     from sensorfault.core.files import appearing
     from sensorfault.logs import LogError, guess
 
-    with show.reading(log.name) as tell:
+    with show.patient(f"reading {log.name}") as tell:
         found = guess(log, tell)
     target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
     if target.exists() and not force:

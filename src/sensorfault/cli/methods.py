@@ -1,4 +1,4 @@
-"""`sensorfault methods`: the catalog."""
+"""`sensorfault methods`: the catalog of methods."""
 
 import click
 

@@ -1,4 +1,4 @@
-"""Arguments and options that several verbs share."""
+"""Arguments and options of several verbs."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,13 +7,18 @@ import click
 
 log_argument = click.argument("log", type=click.Path(path_type=Path))
 vehicle_option = click.option(
-    "--vehicle", type=click.Path(path_type=Path), help="vehicle.toml; by default the one beside the log, else a guess."
+    "--vehicle",
+    type=click.Path(path_type=Path),
+    help="A vehicle.toml. By default the one beside the log, else a guess.",
 )
 json_option = click.option(
     "--json", "json_path", type=click.Path(path_type=str), help="Write the answer as JSON; - for standard output."
 )
 method_option = click.option(
-    "--method", default="relative-conditioning", show_default=True, help="See 'sensorfault methods'."
+    "--method",
+    default="relative-conditioning",
+    show_default=True,
+    help="One of 'sensorfault methods'.",
 )
 model_option = click.option(
     "--model", "model_path", type=click.Path(path_type=Path), help="A model that 'sensorfault fit' wrote."
@@ -23,20 +28,20 @@ learn_option = click.option(
     default=0.5,
     show_default=True,
     type=click.FloatRange(0.05, 0.95),
-    help="Without a model: share of the log to fit on, from its beginning.",
+    help="Without --model: share of the log, from its beginning, to assume healthy and fit on.",
 )
 by_parts_option = click.option(
     "--by-parts/--whole",
     "by_parts",
     default=None,
-    help="Read part by part, in memory that does not grow with the file. By itself where a file is larger than 1 GB "
-    "and its format allows it.",
+    help="Read the log part by part, in memory that does not grow with the file, or whole. By default part by part if "
+    "the file is larger than 1 GB and its format allows it.",
 )
 seed_option = click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0))
 
 
 def out_option(default: str | None, help: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """--out, with or without a default."""
+    """The option --out, with or without a default."""
     return click.option(
         "--out", type=click.Path(path_type=Path), default=default, show_default=bool(default), help=help
     )

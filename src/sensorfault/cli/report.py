@@ -1,10 +1,10 @@
-"""`sensorfault report`: the page of a log."""
+"""`sensorfault report`: write the report page of a log."""
 
 from pathlib import Path
 
 import click
 
-from sensorfault.cli import long, options, show, work
+from sensorfault.cli import answer, detecting, fitting, limits, options, outputs, reading, show
 
 
 @click.command("report")
@@ -15,7 +15,10 @@ from sensorfault.cli import long, options, show, work
 @options.learn_option
 @options.out_option("report.html", "The page to write.")
 @click.option(
-    "--truth", "truth_path", type=click.Path(path_type=Path), help="What 'sensorfault inject' did to the log."
+    "--truth",
+    "truth_path",
+    type=click.Path(path_type=Path),
+    help="The faults in the log, a file that 'sensorfault inject' wrote.",
 )
 @options.by_parts_option
 @options.seed_option
@@ -32,25 +35,21 @@ def command(
     seed: int,
     json_path: str | None,
 ) -> None:
-    """Write a page: signals, scores against limits, faults, and the verdict on each sensor over time.
+    """Write a report page: faults, signals, scores against limits, and the verdict on each sensor over time.
 
-    One file, interactive, opens offline.
+    It is one interactive HTML file that needs no network.
     """
     from sensorfault.core.extras import require
 
     require("`sensorfault report`", "polars", "plotly")
     from sensorfault.report.page import write_page
+    from sensorfault.report.page_sketch import Sketch
 
-    work.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
-    truth = work.read_truth(truth_path) if truth_path else ()
-    if long.by_parts(log, by_parts):
-        result = long.detect(log, vehicle, long.Wanted(model_path, method, learn, seed), out, truth)
-        show.say(f"{len(result.events)} fault events.")
-        show.write_json(json_path, long.answer(result))
-        return
-    table = work.read_log(log, vehicle)
-    ready = work.ready(table, model_path, method, learn, seed)
-    found = work.detect(ready.model, ready.judged)
-    write_page(found, out, truth, summary=ready.sentences)
+    outputs.check_outputs([out, json_path], [log, vehicle, model_path, truth_path])
+    truth = reading.read_truth(truth_path) if truth_path else ()
+    sketch = Sketch()
+    choice = fitting.Choice(model_path, method, learn, seed)
+    found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take)
+    write_page(found, out, truth, summary=limits.of_detection(found), sketch=sketch)
     show.say(f"{len(found.events)} fault events. Wrote {out}.")
-    show.write_json(json_path, work.answer(ready.model, found.log, table.notes, ready.fitted_on_s, found.events))
+    show.write_json(json_path, answer.of_detection(found))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sensorfault.cli import options, show, work
+from sensorfault.cli import options, outputs, show
 
 if TYPE_CHECKING:
     from sensorfault.cli.studies import Reproduction, Study
@@ -37,7 +37,7 @@ def command(name: str | None, seeds: int, quick: bool, out: Path | None, json_pa
     if out is not None:
         require("a study's page", "plotly")
     pages = [out / f"{study.name}{ending}" for study in studies for ending in (".html", ".json")] if out else []
-    work.check_outputs([*(path for path in pages if path.parent.is_dir()), json_path], [])
+    outputs.check_outputs([*(path for path in pages if path.parent.is_dir()), json_path], [])
     code = commit()
     done = [_run(study, seeds, quick) for study in studies]
     for study, result in zip(studies, done, strict=True):

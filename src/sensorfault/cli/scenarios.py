@@ -1,4 +1,4 @@
-"""What the demo plays: a simulated log, how much of it is learned from, and what lies in the rest."""
+"""What the demo shows: a simulated log, how much of it to fit on, and the faults to inject into the rest."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from sensorfault.logs.table import Log
 
 @dataclass(frozen=True)
 class Scenario:
-    """`make` gives the log of a seed. Its first `learn_s` are healthy; the faults lie in the rest, `pause_s` apart."""
+    """`make` simulates a log from a seed. Its first `learn_s` are healthy; the faults come later, `pause_s` apart."""
 
     words: str
     vehicle: str

@@ -71,7 +71,7 @@ def judge(detection: Detection, truth: Sequence[Fault], clean: Log | None = None
     expect(clean, (Log, type(None)), "judge: clean", LOG)
     events = detection.events
     outcomes = tuple(_outcome(fault, detection, clean) for fault in truth)
-    explained = {id(event) for fault in truth for event in _of(fault, events, detection.log.period_s)}
+    explained = {id(event) for fault in truth for event in _of(fault, events, detection.period_s)}
     false_alarms = tuple(event for event in events if id(event) not in explained)
     faulty = covered_s([(f.start_s, f.end_s + GRACE_S) for f in truth])
     hours = max(0.0, detection.log.duration_s - faulty) / 3600
@@ -93,7 +93,7 @@ def _of(fault: Fault, events: Sequence[Event], tick_s: float) -> list[Event]:
 
 
 def _outcome(fault: Fault, detection: Detection, clean: Log | None) -> Outcome:
-    mine = _of(fault, detection.events, detection.log.period_s)
+    mine = _of(fault, detection.events, detection.period_s)
     before, after = _errors(fault, detection, clean) if clean else (float("nan"), float("nan"))
     if not mine:
         return Outcome(fault, False, float("nan"), False, False, False, None, 0, before, after)

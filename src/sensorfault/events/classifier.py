@@ -1,17 +1,17 @@
-"""What kind of fault a channel shows, from sums that grow with it."""
+"""Classify the fault of a channel: spike, offset, drift, frozen or noise, from running sums."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-SURE = 3.0  # standard errors a mean or a slope must stand out by
+SURE = 3.0  # standard errors by which a mean or a slope must differ from 0
 
 
 @dataclass
 class FaultClassifier:
-    """Running sums over the new measurements of one channel while its event lasts.
+    """Running sums over the new measurements of one channel during its event.
 
-    The offset and slope are of the residual (measured minus expected), by least squares over time.
+    Offset and slope are those of the residual (measured minus expected), fitted by least squares over time.
     """
 
     n: int = 0
@@ -26,7 +26,7 @@ class FaultClassifier:
     tr: float = 0.0
 
     def take(self, measurements: list[tuple[float, float, float]]) -> None:
-        """New measurements: time [s], measured [SI], residual [SI]."""
+        """Add new measurements: time [s], measured [SI], residual [SI]."""
         for time, measured, residual in measurements:
             if not self.n:
                 self.start_s = time
@@ -47,9 +47,9 @@ class FaultClassifier:
         return float((self.rr / max(self.n, 1)) ** 0.5)
 
     def kind(self, period_s: float, sigma: float) -> str:
-        """short, jam, drift, bias, noise, or unknown where the residual does not tell.
+        """spike, frozen, drift, offset or noise; unknown if the residual fits none of them.
 
-        `sigma`: standard deviation of the healthy residual [SI].
+        `period_s`: usual time between two measurements [s]. `sigma`: standard deviation of the healthy residual [SI].
         """
         if self.n == 0:
             return "unknown"
@@ -64,7 +64,7 @@ class FaultClassifier:
         slope = (self.tr / self.n - self.t / self.n * mean) / times**2 if times > 0 else 0.0
         left = max(spread**2 - (slope * times) ** 2, 0.0) ** 0.5
         error = max(left, sigma) / np.sqrt(self.n)
-        # The ramp rises by more than it started with: drift. Else a mean that stands clear of the spread: bias.
+        # Drift: the ramp rises by more than it started with. Offset: else, a mean larger than the spread.
         rise = slope * np.sqrt(12) * times
         if abs(slope) * times > SURE * error and abs(rise) > abs(mean):
             return "drift"

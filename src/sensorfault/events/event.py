@@ -4,24 +4,32 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from sensorfault.core import html
-from sensorfault.core.clock import clock
+from sensorfault.core.times import clock
 from sensorfault.faults.fault import KINDS as FAULT_KINDS
 
 KINDS = (*FAULT_KINDS, "unknown")
-NOBODY = "unknown which"
+MOTION = "vehicle motion"
+WHOLE_LOG = "the whole log"  # nothing was recorded
+UNKNOWN = "unknown which"  # no sensor could be isolated
 
 
 @dataclass(frozen=True)
 class Event:
     """One fault, from its first faulty sample to its last.
 
-    `subject`: "sensor", or "motion" when healthy sensors saw a vehicle do what it cannot. `sensor` and `channel` are
-    None where the fault could not be laid at one door; `channel` alone, where all of a sensor's channels are faulty.
-    Channels that one test accuses together (latitude and longitude) are named together.
-    A miss without a sensor is a gap in the log itself: nothing was recorded.
-    `end_s` is None while the fault lasts. `peak_score` and `limit` belong to the test that exceeded its limit most,
-    `method` to the recipe that says so; a miss has no score, its peak is the silence and its limit the silence allowed
-    [s].
+    Args:
+        start_s: time of the first faulty sample [s].
+        end_s: time of the last one [s]; None while the fault is ongoing.
+        subject: "sensor", or "motion" if healthy sensors measured a motion that the vehicle cannot make.
+        sensor: name; None if the faulty sensor could not be isolated. For a kind "missing" without a sensor, nothing at
+            all was recorded: a gap in the log.
+        channel: name; None if all channels of the sensor are faulty. Channels that one test accuses together, such as
+            latitude and longitude, are named together.
+        kind: one of KINDS.
+        peak_score: score of the test that exceeded its limit most, when it did. For a kind "missing", how long nothing
+            was measured [s].
+        limit: the limit of that test. For a kind "missing", how long a sensor may be silent [s].
+        method: the recipe of the model.
     """
 
     start_s: float
@@ -39,13 +47,16 @@ class Event:
         return asdict(self)
 
     @property
-    def where(self) -> str:
-        """Whose the fault is: `gnss.altitude`, `gnss`, `vehicle motion`, or nobody's."""
+    def accused(self) -> str:
+        """The sensor's name, or one of MOTION, WHOLE_LOG, UNKNOWN."""
         if self.subject == "motion":
-            return "vehicle motion"
-        if self.sensor is None:
-            return "the whole log" if self.kind == "missing" else NOBODY
-        return f"{self.sensor}.{self.channel}" if self.channel else self.sensor
+            return MOTION
+        return self.sensor or (WHOLE_LOG if self.kind == "missing" else UNKNOWN)
+
+    @property
+    def where(self) -> str:
+        """`gnss.altitude` or `gnss`, or one of MOTION, WHOLE_LOG, UNKNOWN."""
+        return f"{self.sensor}.{self.channel}" if self.sensor and self.channel else self.accused
 
     def __str__(self) -> str:
         end = "-ongoing" if self.end_s is None else f"-{clock(self.end_s)}" if self.end_s > self.start_s else ""
@@ -53,7 +64,7 @@ class Event:
         unit = " s" if self.kind == "missing" else ""
         size = ", ".join(f"{name} {value:.3g}{unit}" for name, value in sizes if value is not None)
         kind = "fault" if self.kind == "unknown" else self.kind
-        of = f", {NOBODY}" if self.where == NOBODY else f" of {self.where}"
+        of = f", {UNKNOWN}" if self.where == UNKNOWN else f" of {self.where}"
         return f"{clock(self.start_s)}{end} {kind}{of}" + (f" ({size})" if size else "")
 
     def __repr__(self) -> str:

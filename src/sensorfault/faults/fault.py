@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from sensorfault.core import html
-from sensorfault.core.clock import clock
+from sensorfault.core.times import clock
 
 KINDS = ("spike", "offset", "drift", "frozen", "missing", "noise", "scale", "delay")
 OFFSETS = ("spike", "offset", "drift", "noise")  # magnitude in the channel's unit, or in sigmas

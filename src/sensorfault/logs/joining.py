@@ -12,6 +12,7 @@ from sensorfault.logs.late import Late
 from sensorfault.logs.one_clock import Piece, put_on_one_clock
 from sensorfault.logs.readers.source import Source, Tables, joined
 from sensorfault.logs.reading import log_of
+from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.stream import read_stream
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
@@ -19,17 +20,6 @@ from sensorfault.logs.vehicle import VehicleFile
 MARGIN_S = 5.0  # the last seconds of a part go to the next part: rows of a slow topic may still belong to them
 _STAYS = 0.8  # the ticks stay with their stream unless another stream is faster by this factor
 MOST_SAID = 20  # most notes that are kept; each part has its own
-
-
-@dataclass(frozen=True)
-class Said:
-    """Notes on a file that was read part by part.
-
-    `damage`: where the file could not be read. `notes`: that, then the first MOST_SAID other notes.
-    """
-
-    notes: tuple[str, ...]
-    damage: tuple[str, ...]
 
 
 @dataclass
@@ -78,14 +68,14 @@ class Joining:
             self.handed_s = float(part.time[-1])
             self.hand_on(part)
 
-    def said(self, first: tuple[str, ...]) -> Said:
+    def said(self, first: tuple[str, ...]) -> ReadingNotes:
         """All notes; `first`: notes that come first."""
         if not np.isfinite(self.seen_s):
             raise LogError(f"{self.path}: one row is no log; name a file with at least two rows at different times.")
         for note in self._late.notes():
             self._note(note)
         more = (f"{self.path.name}: {self.more} more notes on its parts.",) if self.more else ()
-        return Said(tuple(dict.fromkeys((*self.damage, *first, *self.notes, *more))), tuple(self.damage))
+        return ReadingNotes(tuple(dict.fromkeys((*self.damage, *first, *self.notes, *more))), tuple(self.damage))
 
     def _note(self, note: str) -> None:
         if len(self.notes) < MOST_SAID or note in self.notes:

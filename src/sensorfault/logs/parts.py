@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from sensorfault.logs.guess import guess
-from sensorfault.logs.joining import Joining, Said
+from sensorfault.logs.joining import Joining
 from sensorfault.logs.place import called_after, files_of, find_vehicle, pair_files
 from sensorfault.logs.readers.beginning import is_long
 from sensorfault.logs.readers.formats import format_of, known_format, read_tables
 from sensorfault.logs.readers.registry import registered
 from sensorfault.logs.readers.source import Ask
 from sensorfault.logs.reading import GUESSED
+from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -36,7 +37,7 @@ def read_parts(
     take: Callable[[Log], None],
     vehicle: str | Path | VehicleFile | None = None,
     tell: Callable[[float], None] = lambda share: None,
-) -> Said:
+) -> ReadingNotes:
     """Read one file part by part: `take` is called with consecutive pieces of what `read` would return.
 
     Each part is read with the one before it, so that held values and rates are those of the whole log. Two things

@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from sensorfault.core import html
-from sensorfault.core.clock import clock
 from sensorfault.core.extras import require
+from sensorfault.core.times import clock
 from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
 from sensorfault.logs.units import from_si
 

@@ -57,7 +57,7 @@ function fit(layout, data, [from, to]) {
 function clock(seconds) {
   const tenths = Math.round(Math.abs(seconds) * 10);
   const [h, m, s] = [Math.floor(tenths / 36000), Math.floor(tenths / 600) % 60, ((tenths % 600) / 10).toFixed(1).padStart(4, "0")];
-  return (seconds < 0 ? "−" : "") + (h ? `${h}:${String(m).padStart(2, "0")}:${s}` : `${m}:${s}`);
+  return (seconds < 0 ? "-" : "") + (h ? `${h}:${String(m).padStart(2, "0")}:${s}` : `${m}:${s}`);
 }
 
 function paint(id, figure) {

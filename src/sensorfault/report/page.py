@@ -1,4 +1,4 @@
-"""The report page: one HTML file that opens anywhere, offline, and asks nobody for anything."""
+"""The report page: one HTML file that opens in any browser, offline; it loads nothing from a network."""
 
 import json
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from sensorfault.report.page_scores import scores
 from sensorfault.report.page_signals import signals
 from sensorfault.report.page_sketch import Sketch
 from sensorfault.report.page_verdicts import verdicts
-from sensorfault.report.page_words import SILENCE_ONLY, blind, event_table, facts, headline, sentences, truth_table
+from sensorfault.report.page_words import DROPOUTS_ONLY, blind, event_table, facts, headline, sentences, truth_table
 from sensorfault.runtime.result import Detection
 
 TRUTH_LEGEND = (
@@ -34,37 +34,29 @@ def write_page(
     truth: Sequence[Fault] = (),
     title: str | None = None,
     summary: Sequence[str] = (),
+    sketch: Sketch | None = None,
 ) -> None:
-    """Write what was found to one self-contained, interactive HTML file; it appears whole or not at all.
+    """Write a detection to one self-contained, interactive HTML file, whole or not at all.
 
     Args:
-        detection: verdicts, tests and events; at least one tick.
-        path: the file to write; an older one is replaced.
-        truth: the faults that were injected, to be shown beside those found.
+        detection: what `detect` or `detect_file` found.
+        path: the file to write; an existing one is replaced.
+        truth: the injected faults, shown beside those found.
         title: headline, the log's name by default.
-        summary: how the limits came about, one sentence each.
+        summary: sentences about the model's limits.
+        sketch: what is drawn. By default it is taken from the detection's rows; for a log judged in parts, gather it
+            while they are judged: `detect_file(model, path, see=sketch.take)`.
 
     Raises:
+        RowsNotKept: the log was judged in parts and there is no sketch.
         MissingLibrary: plotly is not installed.
         TypeError: something else than a detection, a path or faults.
     """
     expect(detection, Detection, "write_page: detection", DETECTION)
     expect_path(path, "write_page: path")
     expect_all(truth, Fault, "write_page: truth", FAULTS)
-    write_sketch(Sketch.of(detection.received), path, truth, title, summary, detection.log.notes)
-
-
-def write_sketch(
-    sketch: Sketch,
-    path: str | Path,
-    truth: Sequence[Fault] = (),
-    title: str | None = None,
-    summary: Sequence[str] = (),
-    notes: Sequence[str] = (),
-) -> None:
-    """The same of what was gathered part by part; `notes`: what reading found."""
     require("a report page", "plotly")
-    text = _page(sketch, truth, title, summary, notes)
+    text = _page(sketch or Sketch.of(detection.received), truth, title, summary, detection.notes)
     with appearing(Path(path)) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -82,7 +74,7 @@ def _page(
         style=here.joinpath("page.css").read_text("utf-8"),
         facts=facts(sketch),
         headline=headline(sketch),
-        notes=sentences("About the log", notes) + sentences("How the limits came about", summary),
+        notes=sentences("About the log", notes) + sentences("Limits of the model", summary),
         events=event_table(sketch),
         truth=truth_table(sketch, truth),
         verdict_legend=TRUTH_LEGEND.format(missed="hollow") if truth else "",
@@ -97,7 +89,7 @@ def _page(
 
 
 def figures(sketch: Sketch, truth: Sequence[Fault] = ()) -> dict[str, Json]:
-    """The plots by the id of their place on the page."""
+    """The figures by the id of their place on the page."""
     charts = {"verdicts": verdicts(sketch, truth)}
     for i, sensor in enumerate(sketch.log.sensors):
         if sketch.log.of(sensor.name):
@@ -113,5 +105,5 @@ def _place(name: str) -> str:
 
 def _signal_place(sketch: Sketch, number: int) -> str:
     sensor = sketch.log.sensors[number]
-    about = f" <small>not judged, {SILENCE_ONLY}</small>" if sensor.name in blind(sketch) else ""
+    about = f" <small>{DROPOUTS_ONLY}</small>" if sensor.name in blind(sketch) else ""
     return f"<h3>{escape(sensor.name)}{about}</h3>" + _place(f"signals-{number}")

@@ -1,8 +1,8 @@
-"""A figure of the report page: rows of plots, one over the other, on one time axis.
+"""A figure of the report page: rows of plots, one above the other, on one time axis.
 
-Plain Plotly JSON. A colour is the name of a CSS variable, so the style sheet alone knows colours, and an array travels
-as single precision from some value on, in base64; page.js puts in both, thins the lines out to what a screen can show
-and fits each y axis to what is in view.
+It is Plotly JSON with two additions. A colour is the name of a CSS variable, so that all colours stand in the style
+sheet. An array is stored as differences from its first value, in single precision and base64. page.js fills in both,
+draws only as many points as a screen can show, and fits each y axis to what is in view.
 """
 
 from base64 import b64encode
@@ -21,17 +21,17 @@ HEAD, FOOT, GAP = 4, 34, 24  # pixels above the first row, below the last, and a
 
 @dataclass(frozen=True)
 class Mark:
-    """A stretch of time to be marked in a row. `label` stands at its upper left."""
+    """A span of time to be marked in a row. `label` is drawn at its upper left."""
 
     span: Span
     color: str
     label: str = ""
-    line: str = ""  # "solid" or "dash": a line along the top instead of a shade
+    line: str = ""  # "solid" or "dot": a line along the top instead of a shade
 
 
 @dataclass(frozen=True)
 class Row:
-    """One plot: traces without their axes, and marks. `label` is HTML, names in it escaped."""
+    """One plot: traces without their axes, and marks. `label` is HTML, with names escaped."""
 
     label: str
     traces: Sequence[Json]
@@ -40,7 +40,7 @@ class Row:
 
 
 def packed(array: Float[np.ndarray, " K"]) -> Json:
-    """An array on its way to the page: half the size, and still a millimetre of a longitude."""
+    """An array for the page, in half its size; a longitude keeps millimetres."""
     finite = array[np.isfinite(array)]
     base = float(finite[0]) if finite.size else 0.0
     return {"f4": b64encode((array - base).astype("<f4").tobytes()).decode(), "from": base}
@@ -58,13 +58,13 @@ def _mark(mark: Mark, axis: str) -> Json:
         "y0": 0,
         "y1": 1,
         "fillcolor": mark.color,
-        "line": {"color": mark.color, "width": 1},  # so that one bad sample among thousands can be seen
+        "line": {"color": mark.color, "width": 1},  # so that one faulty sample among thousands is visible
         "label": {"text": mark.label, "textposition": "top left", "font": font, "padding": 2},
     }
 
 
 def time_axis(span: Span) -> Json:
-    """The axis that all figures share."""
+    """The time axis of all figures."""
     return {
         "range": list(span),
         "title": {"text": "time [s]", "standoff": 4, "font": {"size": 11}},

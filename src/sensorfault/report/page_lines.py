@@ -1,4 +1,4 @@
-"""Fewer points for the same picture: what is drawn of a long signal."""
+"""Which points of a long signal to draw, so that the picture stays the same."""
 
 from collections.abc import Sequence
 
@@ -9,9 +9,9 @@ Span = tuple[float, float]  # from, to [s]
 
 
 def extremes(value: Float[np.ndarray, " T"], buckets: int) -> Int[np.ndarray, " K"]:
-    """Where the least and the greatest value of each of `buckets` stretches stand, and both ends; rising.
+    """Rows of the least and the greatest value in each of `buckets` spans, and of both ends; rising.
 
-    Nothing that sticks out is lost, not even a spike of one sample. Values must be finite.
+    A spike of one sample is kept. Values must be finite.
     """
     rows = value.size
     if rows <= 2 * buckets:
@@ -24,10 +24,10 @@ def extremes(value: Float[np.ndarray, " T"], buckets: int) -> Int[np.ndarray, " 
 
 
 def near(time: Float[np.ndarray, " T"], spans: Sequence[Span], budget: int) -> Bool[np.ndarray, " T"]:
-    """Ticks in and around `spans`, about `budget` at most.
+    """Rows in and around `spans` [s], about `budget` at most.
 
-    The shortest spans are kept whole, with half their length and at least two seconds either side, up to half the
-    budget. The others share the rest for the ticks about their starts and ends.
+    The shortest spans are kept whole, with half their length and at least two seconds on either side, up to half the
+    budget. The other spans share the rest of it for the rows around their starts and ends.
     """
     mask = np.zeros(time.size, dtype=bool)
     if not spans:
@@ -48,10 +48,10 @@ def near(time: Float[np.ndarray, " T"], spans: Sequence[Span], budget: int) -> B
 def line(
     time: Float[np.ndarray, " T"], value: Float[np.ndarray, " T"], keep: Bool[np.ndarray, " T"], points: int
 ) -> tuple[Float[np.ndarray, " K"], Float[np.ndarray, " K"]]:
-    """About `points` points that draw `value` over `time`, all of `keep` among them; a NaN breaks the line at a gap.
+    """About `points` points that draw `value` over `time` [s], all of `keep` among them; a NaN breaks the line at gaps.
 
-    A gap is a step three times longer than the usual one between two values, so a sensor slower than the clock is
-    still one line. Of very many gaps only the longest stay open.
+    A gap is a step of more than three times the median step between two values, so a sensor slower than the log's rate
+    is drawn as one line. Of very many gaps only the longest are shown.
     """
     finite = np.flatnonzero(np.isfinite(value))
     t, v = time[finite], value[finite]
@@ -66,9 +66,9 @@ def line(
 
 
 def runs(verdict: Int8[np.ndarray, " T"], most: int = 1500) -> tuple[Int[np.ndarray, " K"], Int8[np.ndarray, " K"]]:
-    """First row and verdict of each stretch of one verdict.
+    """First row and verdict of each run of the same verdict.
 
-    Of more than `most` stretches neighbours are drawn as one, with the worst verdict among them: no fault is lost.
+    If there are more than `most` runs, neighbours are merged and get the worst verdict among them: no fault is lost.
     """
     rows = verdict.size
     start = np.flatnonzero(np.diff(verdict, prepend=verdict[:1] - 1)) if rows else np.zeros(0, dtype=int)

@@ -1,4 +1,4 @@
-"""Where the faults are to be marked in a plot."""
+"""The marks of faults in a plot."""
 
 from collections.abc import Callable, Sequence
 
@@ -11,7 +11,7 @@ from sensorfault.report.page_sketch import Sketch
 from sensorfault.report.page_words import found
 from sensorfault.runtime.model import TOGETHER
 
-NUMBERED = 100  # events; of more, the numbers would only be a smear
+NUMBERED = 100  # events; the numbers of more would overlap
 
 
 def _span(event: Event, sketch: Sketch) -> Span:
@@ -19,7 +19,7 @@ def _span(event: Event, sketch: Sketch) -> Span:
 
 
 def shades(sketch: Sketch, concerns: Callable[[Event], bool]) -> list[Mark]:
-    """The events a plot is concerned with, numbered as in the table."""
+    """Shades for the events that concern a plot, numbered as in the table."""
     numbered = len(sketch.events) <= NUMBERED
     return [
         Mark(_span(event, sketch), "--shade", str(i) if numbered else "")
@@ -29,14 +29,14 @@ def shades(sketch: Sketch, concerns: Callable[[Event], bool]) -> list[Mark]:
 
 
 def at(event: Event, channel: Channel) -> bool:
-    """Whether an event is, or may be, about this channel."""
+    """Whether an event accuses this channel, or may be its fault."""
     return event.sensor in (None, channel.sensor) and (
         event.channel is None or channel.name in event.channel.split(TOGETHER)
     )
 
 
 def injected(sketch: Sketch, channel: Channel, truth: Sequence[Fault]) -> list[Mark]:
-    """The injected faults of a channel: a line along the top, dotted where it was missed."""
+    """The injected faults of a channel: a line along the top, dotted for a fault that was missed."""
     return [
         Mark((f.start_s, f.end_s), "--truth", line="solid" if found(f, sketch.events) else "dot")
         for f in truth

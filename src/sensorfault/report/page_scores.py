@@ -1,4 +1,4 @@
-"""What each test said: its score against its limit."""
+"""Each test over time: its score and its limit."""
 
 from html import escape
 

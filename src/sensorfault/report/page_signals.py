@@ -1,4 +1,4 @@
-"""What each sensor said, and what was put in its place."""
+"""The signals: what each sensor measured, and the stand-in where it was faulty."""
 
 from collections.abc import Sequence
 from html import escape
@@ -10,11 +10,11 @@ from sensorfault.faults.fault import Fault
 from sensorfault.report.page_figure import Json, Row, packed, stacked
 from sensorfault.report.page_marks import at, injected, shades
 from sensorfault.report.page_sketch import Sketch
-from sensorfault.report.page_words import SILENCE_ONLY, blind
+from sensorfault.report.page_words import DROPOUTS_ONLY, blind
 
 
 def digits(value: Float[np.ndarray, " K"]) -> int:
-    """Digits that tell a thousandth of the signal's span from nothing: more for a longitude than for a rate."""
+    """How many digits show a thousandth of the signal's span: more for a longitude than for a rate."""
     finite = value[np.isfinite(value)]
     span = float(np.ptp(finite)) if finite.size else 0.0
     if span == 0.0:
@@ -38,9 +38,9 @@ def _trace(x: Float[np.ndarray, " K"], y: Float[np.ndarray, " K"], name: str, un
 def _row(sketch: Sketch, column: int, truth: Sequence[Fault]) -> Row:
     channel, drawn = sketch.log.channels[column], sketch.channels[column]
     name, unit = escape(channel.name), escape(channel.unit)
-    mode = "lines" if drawn.said.count + drawn.held.count > 200 else "lines+markers"
+    mode = "lines" if drawn.measured.count + drawn.held.count > 200 else "lines+markers"
     parts = (
-        (drawn.said, name, {"color": "--signal", "width": 1.2}),
+        (drawn.measured, name, {"color": "--signal", "width": 1.2}),
         (drawn.held, f"{name}, held", {"color": "--signal", "width": 0.6}),
         (drawn.stand_in, f"{name}, stand-in", {"color": "--standin", "width": 1.6, "dash": "4px,3px"}),
     )
@@ -48,8 +48,8 @@ def _row(sketch: Sketch, column: int, truth: Sequence[Fault]) -> Row:
     marks = shades(sketch, lambda event: at(event, channel)) + injected(sketch, channel, truth)
     text = f"<b>{name}</b>{f' [{unit}]' if unit else ''}"
     if not sketch.watched[column] and channel.sensor not in blind(sketch):
-        text += f" not judged, {SILENCE_ONLY}"
-    return Row(text if traces else f"{text} never spoke", traces, marks)
+        text += f", {DROPOUTS_ONLY}"
+    return Row(text if traces else f"{text} has no data", traces, marks)
 
 
 def rows_of(sketch: Sketch, sensor: str, truth: Sequence[Fault]) -> list[Row]:

@@ -1,4 +1,4 @@
-"""Lines, verdicts and tests as a page draws them, gathered part by part."""
+"""Lines, verdicts and tests as the page draws them, gathered part by part."""
 
 from dataclasses import dataclass, field
 
@@ -8,11 +8,11 @@ from jaxtyping import Bool, Float, Int8
 from sensorfault.report.page_lines import line, runs
 from sensorfault.runtime.result import Trace
 
-GAP = 3.0  # usual steps
+GAP = 3.0  # median steps
 
 
 class Stroke:
-    """One line. `count`: of how many values it is drawn."""
+    """One line. `count`: how many values it is drawn from."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -23,7 +23,7 @@ class Stroke:
     def add(
         self, time: Float[np.ndarray, " T"], value: Float[np.ndarray, " T"], keep: Bool[np.ndarray, " T"], points: int
     ) -> None:
-        """Draw the next part with about `points` points, all of `keep` among them."""
+        """Add the next part, with about `points` points, all of `keep` among them."""
         at = time[np.isfinite(value)]
         if not at.size:
             return
@@ -45,16 +45,16 @@ class Stroke:
 
 
 class Lane:
-    """The verdicts on one sensor: `start` [s] of each stretch of one verdict, and the verdict."""
+    """The verdicts on one sensor: `start` [s] of each run of the same verdict, and the verdict."""
 
     def __init__(self) -> None:
         self.start: list[float] = []
         self.verdict: list[int] = []
 
     def add(self, time: Float[np.ndarray, " T"], verdict: Int8[np.ndarray, " T"], most: int) -> None:
-        """The next part, as at most so many stretches."""
+        """Add the next part, as at most `most` runs."""
         start, value = runs(verdict, most)
-        if self.verdict and value[:1].tolist() == self.verdict[-1:]:  # it goes on
+        if self.verdict and value[:1].tolist() == self.verdict[-1:]:  # the last run continues
             start, value = start[1:], value[1:]
         self.start += time[start].tolist()
         self.verdict += value.tolist()
@@ -62,12 +62,12 @@ class Lane:
 
 @dataclass
 class Drawn:
-    """One channel: what it said, what of it was only held, and what was put in its place."""
+    """One channel: measurements, values that were only held, and the stand-in."""
 
-    said: Stroke = field(default_factory=Stroke)
+    measured: Stroke = field(default_factory=Stroke)
     held: Stroke = field(default_factory=Stroke)
     stand_in: Stroke = field(default_factory=Stroke)
-    fresh_s: float = -np.inf  # the last measurement
+    fresh_s: float = -np.inf  # time of the last measurement [s]
 
 
 class Tested:
@@ -76,10 +76,10 @@ class Tested:
     def __init__(self, trace: Trace) -> None:
         self.name, self.channel = trace.name, trace.channel
         self.score, self.limit = Stroke(), Stroke()
-        self._sizes: list[tuple[float, float, float]] = []  # least, usual, greatest of each part
+        self._sizes: list[tuple[float, float, float]] = []  # least, median and greatest score of each part
 
     def add(self, time: Float[np.ndarray, " T"], trace: Trace, keep: Bool[np.ndarray, " T"], points: int) -> None:
-        """The next part."""
+        """Add the next part."""
         self.limit.add(time, trace.limit, keep, points // 4)
         self.score.add(time, trace.score, keep, points)
         finite = trace.score[np.isfinite(trace.score)]
@@ -88,7 +88,7 @@ class Tested:
 
     @property
     def spans_much(self) -> bool:
-        """Whether the score needs a logarithmic axis: positive, and its peak far above the usual."""
+        """Whether the score needs a logarithmic axis: it is positive, and its peak is far above the median."""
         if not self._sizes:
             return False
         least, usual, greatest = np.array(self._sizes).T

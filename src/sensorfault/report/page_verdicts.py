@@ -1,13 +1,14 @@
-"""The verdict on each sensor over time, told by height and colour: ok thin, unknown hatched, fault high."""
+"""The verdict on each sensor over time, by height and colour: ok thin, unknown hatched, fault high."""
 
 from collections.abc import Sequence
 from html import escape
 
+from sensorfault.core.times import clock
 from sensorfault.core.types import FAULT, OK, UNKNOWN, VERDICTS
 from sensorfault.faults.fault import Fault
 from sensorfault.report.page_figure import FOOT, Json, time_axis
 from sensorfault.report.page_sketch import Sketch
-from sensorfault.report.page_words import clock, found
+from sensorfault.report.page_words import found
 
 LANE = 56  # pixels a sensor: its name, the injected faults, the band
 LOOKS: dict[int, Json] = {
@@ -49,7 +50,7 @@ def _trace(bars: Sequence[Bar], look: Json, lift: float) -> Json:
 
 
 def _truth(sketch: Sketch, truth: Sequence[Fault]) -> list[Json]:
-    """The injected faults as thin lines above the bands; a missed one hollow, with a cross."""
+    """The injected faults as thin lines above the bands; a missed fault is hollow, with a cross."""
     lane = {name: i for i, (name, _) in enumerate(sketch.lanes)}
     hits: list[Bar] = []
     misses: list[Bar] = []
@@ -83,7 +84,7 @@ def _label(lane: int, name: str) -> Json:
 
 
 def verdicts(sketch: Sketch, truth: Sequence[Fault] = ()) -> Json:
-    """One band a sensor, top to bottom in the order of the log."""
+    """The figure of verdicts: one band for each sensor, in the order of the log."""
     bars = _bars(sketch)
     data = [_trace([bar for code, bar in bars if code == verdict], look, 0.24) for verdict, look in LOOKS.items()]
     names = [_label(i, name) for i, (name, _) in enumerate(sketch.lanes)]

@@ -1,28 +1,19 @@
-"""The words and tables of the report page, as HTML. Everything that comes from a file is escaped here."""
+"""The sentences and tables of the report page, as HTML. Text from files is escaped here."""
 
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from html import escape
 
-from sensorfault.events.event import Event
+from sensorfault.core.times import clock
+from sensorfault.events.event import MOTION, UNKNOWN, WHOLE_LOG, Event
 from sensorfault.faults.fault import SIZELESS, Fault
-from sensorfault.report.page_sketch import MOTION, NAMELESS, Sketch
+from sensorfault.report.page_sketch import Sketch
 
-GAP = "all (gap in the log)"
-SILENCE_ONLY = "only its silence is noticed"
-
-
-def clock(seconds: float) -> str:
-    """[s] -> m:ss.ss, from an hour on h:mm:ss.ss."""
-    hundredths = round(abs(seconds) * 100)
-    minutes, rest = divmod(hundredths, 6000)
-    hours, minutes = divmod(minutes, 60)
-    text = f"{hours}:{minutes:02d}:{rest / 100:05.2f}" if hours else f"{minutes}:{rest / 100:05.2f}"
-    return f"−{text}" if seconds < 0 else text
+DROPOUTS_ONLY = "checked for dropouts only"
 
 
 def number(value: float | None) -> str:
-    """Three digits, or a dash where there is nothing to say."""
+    """Three digits; a dash for None."""
     return "–" if value is None else f"{value:.3g}"
 
 
@@ -32,34 +23,27 @@ def _count(number: int, what: str) -> str:
 
 def headline(sketch: Sketch) -> str:
     """The finding in one sentence."""
-    kinds = [_accused(event) for event in sketch.events]
+    whom = [event.accused for event in sketch.events]
     named = {e.sensor for e in sketch.events if e.sensor is not None and e.subject == "sensor"}
-    faults = sum(accused not in (MOTION, GAP) for accused in kinds)
+    faults = sum(one not in (MOTION, WHOLE_LOG) for one in whom)
     text = _count(faults, "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
-    if NAMELESS in kinds:
-        text += f", {kinds.count(NAMELESS)} of them not laid to one sensor"
-    if MOTION in kinds:
-        text += f", {_count(kinds.count(MOTION), 'implausible motion')}"
-    if GAP in kinds:
-        text += f", {_count(kinds.count(GAP), 'gap')} in the log"
+    if UNKNOWN in whom:
+        text += f", {whom.count(UNKNOWN)} of them on an unknown sensor"
+    if MOTION in whom:
+        text += f", {_count(whom.count(MOTION), 'implausible motion')}"
+    if WHOLE_LOG in whom:
+        text += f", {_count(whom.count(WHOLE_LOG), 'gap')} in the log"
     unjudged = blind(sketch)
     text += f"; {_count(len(sketch.log.sensors) - len(unjudged), 'sensor')} watched"
     if unjudged:
-        silence = SILENCE_ONLY if len(unjudged) == 1 else SILENCE_ONLY.replace("its", "their")
-        text += f", {', '.join(unjudged)} not judged ({silence})"
+        text += f", {', '.join(unjudged)} {DROPOUTS_ONLY}"
     return escape(text[0].upper() + text[1:] + ".")
 
 
 def blind(sketch: Sketch) -> list[str]:
-    """Sensors of which no channel is judged."""
+    """Sensors without a channel that is judged."""
     judged = {c.sensor for c, watched in zip(sketch.log.channels, sketch.watched, strict=True) if watched}
     return [sensor.name for sensor in sketch.log.sensors if sensor.name not in judged]
-
-
-def _accused(event: Event) -> str:
-    if event.subject == "motion":
-        return MOTION
-    return event.sensor or (GAP if event.kind == "missing" else NAMELESS)
 
 
 def facts(sketch: Sketch) -> str:
@@ -75,16 +59,16 @@ def facts(sketch: Sketch) -> str:
 
 
 def sentences(heading: str, lines: Sequence[str]) -> str:
-    """A short list under a heading, or nothing."""
+    """A list under a heading; nothing if it is empty."""
     if not lines:
         return ""
     return f"<h3>{escape(heading)}</h3><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul>"
 
 
 def match(fault: Fault, events: Iterable[Event]) -> Event | None:
-    """The event that names the fault's sensor while the fault lasts; of several, the most alike.
+    """The event on the fault's sensor during the fault; of several, the one with the most in common.
 
-    For display only; no measure of merit.
+    For display only: `evaluation.judge` measures how good a detection is.
     """
     same = [
         e
@@ -95,12 +79,12 @@ def match(fault: Fault, events: Iterable[Event]) -> Event | None:
 
 
 def found(fault: Fault, events: Iterable[Event]) -> bool:
-    """Whether there is such an event."""
+    """Whether an event matches the fault."""
     return match(fault, events) is not None
 
 
 def _outcome(fault: Fault, event: Event | None) -> str:
-    """What became of an injected fault; the event's own words where they differ from the truth."""
+    """Whether an injected fault was found, and as what if that differs from the truth."""
     if event is None:
         return "missed"
     if (event.channel, event.kind) == (fault.channel, fault.kind):
@@ -109,9 +93,9 @@ def _outcome(fault: Fault, event: Event | None) -> str:
 
 
 def _row(start_s: float, end_s: float | None, log_end_s: float, cells: Sequence[str], tone: str = "") -> str:
-    """A row that zooms the plots to its time; `cells` are escaped here."""
+    """A table row; a click on it zooms the plots to its time. `cells` are escaped here."""
     last = log_end_s if end_s is None else end_s
-    times = [_time(start_s), "lasts" if end_s is None else _time(end_s)]
+    times = [_time(start_s), "ongoing" if end_s is None else _time(end_s)]
     body = "".join(f'<td class="time">{cell}</td>' for cell in times) + "".join(f"<td>{escape(c)}</td>" for c in cells)
     return f'<tr tabindex="0" data-from="{start_s:.6f}" data-to="{last:.6f}" class="{tone}">{body}</tr>'
 
@@ -134,13 +118,13 @@ def event_table(sketch: Sketch) -> str:
     for i, e in enumerate(sketch.events, 1):
         against = "–" if e.peak_score is None else f"{number(e.peak_score)} / {number(e.limit)}"
         against += " s silent" if e.kind == "missing" and e.peak_score is not None else ""
-        row = _row(e.start_s, e.end_s, end, (_accused(e), e.channel or "–", e.kind, against, e.method))
+        row = _row(e.start_s, e.end_s, end, (e.accused, e.channel or "–", e.kind, against, e.method))
         rows.append(row.replace("<td", f"<td>{i}</td><td", 1))
     return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
 
 
 def truth_table(sketch: Sketch, truth: Sequence[Fault]) -> str:
-    """All injected faults, found or missed, or nothing where none was injected."""
+    """All injected faults, found or missed; nothing if none was injected."""
     if not truth:
         return ""
     end = sketch.end_s
@@ -151,6 +135,6 @@ def truth_table(sketch: Sketch, truth: Sequence[Fault]) -> str:
         size = f"{fault.magnitude:.3g}{' σ' if fault.sigmas else ''}" if fault.kind not in SIZELESS else "–"
         cells = (fault.sensor, fault.channel or "all", fault.kind, size, _outcome(fault, event))
         rows.append(_row(fault.start_s, fault.end_s, end, cells, "missed" if event is None else "hit"))
-    text = f"{hits} of {len(truth)} found, counting any event on the same sensor that overlaps."
+    text = f"{hits} of {len(truth)} found. Any event on the same sensor that overlaps in time counts."
     heads = ("start", "end", "sensor", "channel", "kind", "magnitude", "")
     return f"<h2>Injected faults</h2><p>{text}</p>{_table(heads, rows)}"

@@ -1,27 +1,28 @@
-"""A model and a log: verdicts and fault events, from a file or live."""
+"""Judge a log, or live samples, with a fitted model: verdicts and fault events."""
 
 from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.core.clock import clock
 from sensorfault.core.expect import LOG, MODEL, expect, wrong
+from sensorfault.core.times import clock
 from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.table import Log
-from sensorfault.runtime.extractor import EventExtractor, context_of
+from sensorfault.runtime.detector import Detector
+from sensorfault.runtime.extractor import context_of
 from sensorfault.runtime.model import Model
-from sensorfault.runtime.replay import Progress, replay_log
-from sensorfault.runtime.result import Detection, detected
+from sensorfault.runtime.replay import Progress
+from sensorfault.runtime.result import Detection
 from sensorfault.runtime.runners import Stepper, StepResult, nothing_yet
 from sensorfault.runtime.tracker import Tracker
 
 
 def detect(model: Model, log: Log, progress: Progress | None = None) -> Detection:
-    """Judge every row of a log, from a fresh start.
+    """Judge every row of a log with a fitted model, whose monitor starts anew.
 
     Args:
         model: what `fit` or `load` returned, for C channels of S sensors.
@@ -38,21 +39,19 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
     """
     expect(model, Model, "detect: model", MODEL)
     expect(log, Log, "detect: log", LOG)
-    log = model.take(log)
-    result = replay_log(model.monitor, log, progress)
-    extractor = EventExtractor(model)
-    extractor.take(log, result)
-    return detected(model, log, result, extractor.events)
+    detector = Detector(model)
+    detector.take(log, progress=progress)
+    return detector.found()
 
 
 class Live:
-    """A fitted model on a vehicle: one sample in, one verdict out, events as they end.
+    """A fitted model on a running vehicle: one sample in, one verdict out.
 
     >>> live = Live(model)
     >>> now = live.push(0.02, [0.01, 0.0, 0.12, 0.3, -0.1, 9.8])
     >>> now.sample  # 0 ok, 1 unknown, 2 fault
 
-    `events` are those that have ended; `open()` those that go on.
+    `events` are those that have ended; `open()` returns those that are ongoing.
 
     Raises:
         TypeError: something else than a model.
@@ -75,19 +74,23 @@ class Live:
         self._now = nothing_yet(model.monitor)
         self._begun = False
         self._time: float | None = None
-        self._epoch: float | None = None  # when the last one ended
+        self._epoch: float | None = None  # when the last one ended [s]
 
     def push(self, time: float, value: Any, fresh: Any = None) -> StepResult:
-        """Judge one sample: `time` [s], rising; `value` in SI in the order of `model.inputs`, NaN if absent.
+        """Judge one sample.
 
-        `fresh` marks new measurements; left out, a held sensor is new when one of its channels has changed. Where the
-        model judges epochs, a sample that ends none is answered with what was said of the last.
+        Args:
+            time: [s], greater than that of the sample before.
+            value: one for each of `model.inputs`, in their order, in SI units; NaN if absent.
+            fresh: which values are new measurements, one for all or one each. By default a held sensor's values are new
+                if one of its channels has changed, and all others are new.
 
         Returns:
-            Verdicts (C channels, S sensors, the sample), scores and limits (K tests), residuals and values (C) [SI].
+            Verdicts (C channels, S sensors, the sample), scores and limits (K tests), residuals and values (C) [SI]. If
+            the model judges epochs and this sample ends none, those on the last epoch.
 
         Raises:
-            ValueError: time did not rise, or the number of values is not that of the model's channels.
+            ValueError: time did not rise, or there are not as many values as the model has inputs.
             TypeError: the time is no number, or the values are not numbers.
         """
         row = _row(value)
@@ -116,7 +119,7 @@ class Live:
         self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()
     ) -> StepResult:
         now = self._step.push(time, value, fresh, block)
-        # A row without a fault, a silence or a hole before it, while no event is open, changes nothing in the tracker.
+        # The tracker can skip a row without fault, silence or hole before it while no event is open.
         silent = gap_s > self._watch.hole_s or (now.silence > self._watch.silent_after_s).any()
         if FAULT in (now.sample, now.motion) or silent or not self._begun or self._tracker.busy():
             self._begun = True
@@ -129,7 +132,7 @@ class Live:
         return f"<Live {at}, {ended} ended and {ongoing} ongoing: {self._model!r}>"
 
     def open(self) -> list[Event]:
-        """Events that go on; their end_s is None."""
+        """Ongoing events; their end_s is None."""
         return self._tracker.open()
 
     def _changed(self, value: Float[np.ndarray, " C"]) -> Bool[np.ndarray, " C"]:

@@ -1,4 +1,4 @@
-"""What a replay says of a log, or of one part of it after the other, as fault events."""
+"""Fault events from the verdicts on a log, or on its consecutive parts."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ from sensorfault.runtime.tracker import QUIET_S, EventContext, Tracker
 
 
 def context_of(model: Model) -> EventContext:
-    """What a tracker must know of a model."""
+    """The part of a model that a tracker needs."""
     paths = [channel.path for channel in model.channels]
     return EventContext(
         model.method,
@@ -34,22 +34,22 @@ def _examined(path: str | None, paths: list[str]) -> tuple[int, ...] | str | Non
 
 
 class EventExtractor:
-    """Gathers the events of consecutive parts of one log."""
+    """Collects the events of consecutive parts of one log."""
 
     def __init__(self, model: Model) -> None:
         self._watch = context_of(model)
         self._tracker = Tracker(self._watch)
         self._ended: list[Event] = []
-        self._before_s = float("nan")  # the last row of the part before
-        self._marked_s = -np.inf
+        self._before_s = float("nan")  # time of the last row of the previous part
+        self._marked_s = -np.inf  # time of the last marked row
 
     @property
     def events(self) -> list[Event]:
-        """All so far; those that go on have no end."""
+        """All events so far; ongoing ones have no end."""
         return sorted(self._ended + self._tracker.open(), key=lambda event: event.start_s)
 
     def take(self, log: Log, result: Replayed) -> None:
-        """A part with at least one row, and what was said of it."""
+        """Add the next part, which has at least one row, and its replay."""
         first = float(log.time[0])
         gap_s = np.diff(log.time, prepend=first if np.isnan(self._before_s) else self._before_s)
         self._before_s = float(log.time[-1])
@@ -61,7 +61,7 @@ class EventExtractor:
             self._ended += self._tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
 
     def _interesting(self, time: Float[np.ndarray, " T"], marked: Bool[np.ndarray, " T"]) -> Any:
-        """Rows a tracker must see: the first, the marked ones, those for QUIET_S after, and the one that ends them."""
+        """Rows the tracker needs: the first, the marked ones, those in QUIET_S after a marked one, and one more."""
         last = np.maximum(np.maximum.accumulate(np.where(marked, time, -np.inf)), self._marked_s)
         self._marked_s = float(last[-1])
         near = time - last <= QUIET_S
@@ -71,7 +71,7 @@ class EventExtractor:
 
 
 def _arrays(result: Replayed) -> list[Any]:
-    """What a `Now` holds, stacked over time."""
+    """The fields of a StepResult, stacked over time."""
     score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (result.scores, result.limits))
     verdicts = result.channel, result.sensor, result.sample, result.motion
     rest = result.value, result.residual, result.valid, result.silence

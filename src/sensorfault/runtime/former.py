@@ -1,4 +1,4 @@
-"""What the names in older model files and commands are called now."""
+"""Former names of parts and methods in older model files and commands -> the names of today."""
 
 PARTS = {
     "Of": "SelectResidual",

@@ -1,4 +1,4 @@
-"""A fitted monitor with the names of what it watches."""
+"""A fitted monitor, with the names of its channels, sensors and tests."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,19 +11,27 @@ from sensorfault.logs.epochs import Epoch, Framing
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.runtime import show
 
-MOTION = "motion"  # instead of a channel: this test judges how the vehicle moves
-TOGETHER = ", "  # between channels that one test accuses together
-MISSED = 3.0  # a sensor is silent once it has let this many of its periods pass
+MOTION = "motion"  # in place of a channel: this test judges the motion of the vehicle
+TOGETHER = ", "  # joins channels that one test accuses together
+MISSED = 3.0  # a sensor is silent after this many of its periods without a measurement
 
 
 @dataclass(frozen=True)
 class Model:
-    """What `fit` makes and `detect` needs.
+    """A fitted model: `fit` returns one, `detect` takes one. It has C channels.
 
-    `tests` names every test in the order of the monitor's branches, as (statistic, channel path): several paths for one
-    that accuses them together, None for one that finds out whom, MOTION for one of the vehicle. `tick_s` is the clock
-    it was fitted on, `sigma` the standard deviation of each channel's healthy residual [SI], `summary` how it was
-    fitted and what that run measured, for people.
+    Args:
+        method: the recipe it was made by.
+        monitor: the fitted parts.
+        channels: what it judges, in the order of the monitor's columns.
+        sensors: the sensors of these channels.
+        tests: every test in the order of the monitor's branches, as (statistic, channel path). Several paths for a test
+            that accuses them together, None for one that isolates the faulty channel, MOTION for one of the vehicle.
+        watched: which channels are judged. The others are checked for dropouts only.
+        tick_s: time between two rows of the log it was fitted on [s].
+        sigma: standard deviation of each channel's healthy residual [SI].
+        summary: how it was fitted, and what was measured then; for people.
+        framing: how to cut raw satellite data into epochs, for a model that judges epochs.
     """
 
     method: str
@@ -52,9 +60,9 @@ class Model:
 
     @property
     def silent_after_s(self) -> Float[np.ndarray, " C"]:
-        """A channel without a value for longer than this is silent [s]; half a tick allows for jitter.
+        """How long each channel may be without a value until it is silent [s]; half a tick allows for jitter.
 
-        Satellites set: their silence is no fault.
+        Infinite for satellites, which set.
         """
         if self.framing:
             return np.full(len(self.channels), np.inf)
@@ -62,14 +70,14 @@ class Model:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Paths of the channels that are read, in the order in which a live sample gives them."""
+        """Paths of the channels to read, in the order of a live sample."""
         return self.framing.inputs if self.framing else tuple(channel.path for channel in self.channels)
 
     def take(self, log: Log) -> Log:
-        """The channels of this model out of a log, in the model's order; epochs, if it judges those.
+        """The log with only the channels of this model, in the model's order; as epochs, if the model judges those.
 
         Raises:
-            LogError: a channel is missing, or the clock is not the one the model was fitted on.
+            LogError: a channel is missing, or the log is sampled at another rate than the model was fitted at.
         """
         if self.framing:
             framed = isinstance(log.block, Epoch) and log.channels == self.channels
@@ -83,8 +91,8 @@ class Model:
             )
         if len(log) > 1 and not 0.5 < log.period_s / self.tick_s < 2:
             raise LogError(
-                f"{log.name} ticks every {log.period_s:.4g} s, the model was fitted at {self.tick_s:.4g} s; "
-                "fit a model on a log of this rate."
+                f"{log.name} has a row every {log.period_s:.4g} s, but the model was fitted on one every "
+                f"{self.tick_s:.4g} s; fit a model on a log of the same rate."
             )
         return log.select(channel.path for channel in self.channels)
 
@@ -96,9 +104,9 @@ def owners(channels: tuple[Channel, ...], sensors: tuple[Sensor, ...]) -> tuple[
 
 
 def hold_s(log: Log) -> Float[np.ndarray, " C"]:
-    """How long each channel's value and verdict stand without a new measurement [s].
+    """How long each channel's value and verdict stay valid without a new measurement [s].
 
-    One and a half periods for a sensor slower than the clock, nothing for one that comes with every tick.
+    One and a half periods for a sensor slower than the log's rate, 0 for one that is measured in every row.
     """
     period = {sensor.name: sensor.period_s for sensor in log.sensors}
     own = np.array([period[channel.sensor] for channel in log.channels])

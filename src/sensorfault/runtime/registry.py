@@ -1,6 +1,6 @@
-"""Every part that a model file may name. A part registers itself by standing in one of the ROOMS.
+"""Every part that a model file may name. A part registers itself by being defined in one of the packages ROOMS.
 
-Nothing else is built from a file: neither code from elsewhere nor a class that is no part.
+Nothing else is ever built from a model file.
 """
 
 from functools import cache
@@ -17,7 +17,7 @@ def parts() -> dict[str, type[eqx.Module]]:
     """Part classes by name.
 
     Raises:
-        TypeError: two parts have one name, so a model file could not say which it means.
+        TypeError: two parts have the same name, so that a model file would be ambiguous.
     """
     found: dict[str, type[eqx.Module]] = {}
     for room in ROOMS:

@@ -1,4 +1,4 @@
-"""A whole log through a monitor, chunk by chunk: one compilation for every length, bounded memory, progress."""
+"""Run a monitor over a log in chunks of fixed length: compiled once for logs of any length."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -17,15 +17,15 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.numerics.packing import pack, unpack
 from sensorfault.runtime.runners import samples
 
-CHUNK = 8192
-EPOCHS = 512  # of a log with a block, whose rows are long and few
+CHUNK = 8192  # rows
+EPOCHS = 512  # rows a chunk of a log with a block, whose rows are long and few
 
 Progress = Callable[[float], None]
-Numbers = np.ndarray | Array  # on the device while it runs, NumPy afterwards
+Numbers = np.ndarray | Array  # a JAX array while it runs, NumPy afterwards
 
 
 class Replayed(NamedTuple):
-    """What a replay keeps of every sample, stacked over time. Scores are NaN where a test had nothing to test."""
+    """What a replay keeps of each of T rows: C channels, S sensors, K tests. Scores are NaN without a test."""
 
     channel: Int8[Numbers, "T C"]
     sensor: Int8[Numbers, "T S"]
@@ -36,7 +36,7 @@ class Replayed(NamedTuple):
     residual: Float[Numbers, "T C"]
     valid: Bool[Numbers, "T C"]
     value: Float[Numbers, "T C"]  # measured, or its stand-in [SI]
-    believed: Bool[Numbers, "T C"]  # whether `value` may be believed
+    believed: Bool[Numbers, "T C"]  # whether `value` can be trusted
     silence: Float[Numbers, "T C"]
 
 
@@ -78,13 +78,13 @@ def _chunk(
 
 
 def _strong(tree: tuple[Monitor, MonitorState]) -> tuple[Monitor, MonitorState]:
-    """Without weak types, which would compile the same step again."""
+    """The same without weak types, which would make JAX compile the same step again."""
     made: tuple[Monitor, MonitorState] = jax.tree.map(lambda x: jnp.asarray(x, jnp.result_type(x)), tree)
     return made
 
 
 def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> Replayed:
-    """Judge every row of a log, from a fresh start. `progress` is told the share done, 0 to 1.
+    """Judge every row of a log; the monitor starts anew. `progress` gets the share done, 0 to 1.
 
     Raises:
         LogError: the log is empty.
@@ -95,7 +95,7 @@ def replay_log(monitor: Monitor, log: Log, progress: Progress | None = None) -> 
 def replay_on(
     monitor: Monitor, state: MonitorState, log: Log, progress: Progress | None = None
 ) -> tuple[MonitorState, Replayed]:
-    """The same from any state, as after the part of the log before this one; and the state after it.
+    """Judge every row of a log from a given state, such as that after the previous part. Returns the state after it.
 
     Raises:
         LogError: the log is empty.

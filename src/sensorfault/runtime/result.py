@@ -1,8 +1,8 @@
-"""What a fitted monitor found in a log."""
+"""What a model finds in a log."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float, Int8
@@ -11,17 +11,24 @@ from sensorfault.core.plotting import draw
 from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
-from sensorfault.logs.table import Log
+from sensorfault.logs.table import Log, LogError
 from sensorfault.runtime import show, tables
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Replayed
 
+PER_ROW = ("channel", "sensor", "sample", "motion", "repaired", "traces")
+
+
+class RowsNotKept(LogError, AttributeError):
+    """Asked for the rows of a log that was judged in parts. An AttributeError too, so that hasattr() is False."""
+
 
 @dataclass(frozen=True)
 class Trace:
-    """One test over time: its score and limit, NaN where it had nothing to test.
+    """One test over time: its score and its limit, NaN where there was nothing to test.
 
-    `channel`: a path, several paths for a test that accuses them together, None for one that finds out whom, "motion".
+    `channel`: a path `sensor.channel`; several paths for a test that accuses them together; None for a test of all
+    channels that isolates the faulty one itself; "motion" for a test of the vehicle's motion.
     """
 
     name: str
@@ -40,12 +47,28 @@ class Trace:
 
 @dataclass(frozen=True)
 class Detection:
-    """Verdicts (OK 0, UNKNOWN 1, FAULT 2) on every tick of `log`, the tests behind them, and the fault events.
+    """The events in a log, and the verdict on each of its T rows, C channels and S sensors.
 
-    `motion` is the verdict on the vehicle's motion, where the method judges it.
-    `watched` says which channels were judged; of the others only silence was noticed.
-    `repaired` is `log.value` with stand-ins where a channel was rebuilt, NaN where there was nothing to say [SI].
-    `residual`: measured minus expected [SI; metres where a method compares positions], NaN where it was not tested.
+    A log that came in several parts (`detect_file`) was never in memory as a whole. Of its rows only the first and the
+    last are kept, in `log`; reading `channel`, `sensor`, `sample`, `motion`, `repaired` or `traces` raises RowsNotKept.
+    `whole` says which of the two it is.
+
+    Args:
+        log: what was judged, with the channels of the model in the model's order. `log.notes`: what reading found.
+        method: the recipe of the model.
+        watched: which channels were judged. The others were checked for dropouts only.
+        channel: verdict on each channel: OK 0, UNKNOWN 1, FAULT 2.
+        sensor: verdict on each sensor.
+        sample: verdict on each row.
+        motion: verdict on the vehicle's motion, UNKNOWN where the method does not judge it.
+        repaired: `log.value` with stand-ins where a channel was rebuilt, NaN where there is no value to trust [SI].
+        traces: every test over time.
+        events: the faults, in order of their start.
+        residual: measured minus expected [SI; metres where a method compares positions], NaN where it was not tested;
+            None for a detection that was made by hand.
+        model: what judged the log; None for a detection that was made by hand.
+        fitted_on_s: from when to when the log was assumed healthy to fit `model` on it [s]; None if it was not.
+        rows_left_out: how many judged rows are not in `log`.
     """
 
     log: Log
@@ -59,12 +82,52 @@ class Detection:
     traces: tuple[Trace, ...]
     events: tuple[Event, ...]
     residual: Float[np.ndarray, "T C"] | None = None
+    model: Model | None = None
+    fitted_on_s: tuple[float, float] | None = None
+    rows_left_out: int = 0
+
+    if not TYPE_CHECKING:  # else a type checker would accept any name
+
+        def __getattr__(self, name: str) -> Any:
+            if name in PER_ROW and "log" in self.__dict__:
+                raise RowsNotKept(
+                    f"{self.log.name} was judged in parts and its rows were not kept, so there is no '{name}'; "
+                    "read the log whole, or look at each part while it is judged (detect_file's argument `see`)."
+                )
+            raise AttributeError(f"{type(self).__name__} has no '{name}'")
+
+    @property
+    def whole(self) -> bool:
+        """Whether the verdicts on all rows were kept."""
+        return "sample" in self.__dict__
+
+    @property
+    def rows(self) -> int:
+        """How many rows were judged."""
+        return len(self.log) + self.rows_left_out
+
+    @property
+    def period_s(self) -> float:
+        """The usual time between two rows [s]."""
+        return self.log.period_s if self.whole or self.model is None else self.model.tick_s
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What reading the log found, one sentence each."""
+        return self.log.notes
+
+    def without_rows(self, ends: Log, rows: int) -> "Detection":
+        """The same result without the verdicts on rows. `ends`: the first and the last of the `rows` rows judged."""
+        bare = replace(self, log=ends, rows_left_out=rows - len(ends), residual=None)
+        for name in PER_ROW:
+            del bare.__dict__[name]
+        return bare
 
     def __repr__(self) -> str:
         return f"<Detection {show.line(self.log, self.method, self.events)}>"
 
     def _repr_html_(self) -> str:
-        return show.as_html(self.log, self.method, self.events, self.sensor)
+        return show.as_html(self.log, self.method, self.events, self.sensor if self.whole else None)
 
     def events_table(self, pandas: bool = False) -> Any:
         """One row an event, by onset: start_s, end_s [s], subject, sensor, channel, kind, peak_score, limit, method.
@@ -124,7 +187,7 @@ class Detection:
 
     @property
     def received(self) -> "Detection":
-        """Of a log of epochs, without the satellites that never rose."""
+        """The same without satellites that were never received, if this is a log of epochs."""
         kept = np.isfinite(self.log.value).any(axis=0)
         if not self.log.block or kept.all() or not kept.any():
             return self
@@ -142,7 +205,7 @@ class Detection:
 
 
 def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) -> Detection:
-    """What a model's monitor said of every row of a log it has taken, and the events in it."""
+    """The detection of a log that `model.take` returned, from the replay of it."""
     doubtful = np.isnan(log.value) | log.fresh | (np.asarray(result.channel) == FAULT)
     lost = ~np.asarray(result.believed) & doubtful
     return Detection(
@@ -157,6 +220,7 @@ def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) 
         traces=_traces(model, result),
         events=tuple(events),
         residual=np.where(np.asarray(result.valid), np.asarray(result.residual), np.nan),
+        model=model,
     )
 
 

@@ -1,4 +1,4 @@
-"""One step, three runners: replay (scan), live (one compiled step), fleet (vmap)."""
+"""Run a monitor's step: over a log (scan), live (one compiled step), or over many vehicles at once (vmap)."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
@@ -19,14 +19,14 @@ Kept = TypeVar("Kept")
 
 
 def everything(report: Report) -> Report:
-    """Keep the full report: 3 kB a sample for 12 channels."""
+    """Keep the full report: 3 kB a row for 12 channels."""
     return report
 
 
 def samples(
     time: Float[np.ndarray, " T"], value: Float[np.ndarray, "T C"], fresh: Bool[np.ndarray, "T C"], block: Any = ()
 ) -> Sample:
-    """Rows of a log as the samples a monitor takes; NaN is *absent*."""
+    """Rows of a log as samples for a monitor; NaN means absent."""
     present = np.isfinite(value)
     return Sample(
         jnp.asarray(time),
@@ -44,7 +44,7 @@ def replay(
     rows: Sample,
     keep: Callable[[Report], Kept] = everything,  # type: ignore[assignment]
 ) -> tuple[MonitorState, Kept]:
-    """A whole log through the monitor: the state after it, and what `keep` takes of each report, stacked over time."""
+    """Run the monitor over all rows. Returns the state after them, and what `keep` keeps of each, stacked over time."""
 
     def one(state: MonitorState, sample: Sample) -> tuple[MonitorState, Kept]:
         state, report = monitor.step(state, sample)
@@ -59,15 +59,16 @@ def fleet(
     rows: Sample,
     keep: Callable[[Report], Kept] = everything,  # type: ignore[assignment]
 ) -> tuple[MonitorState, Kept]:
-    """Many vehicles, or many injected faults, through one monitor: `states` and `rows` have a leading axis.
+    """Run one monitor over many vehicles, or many injected faults: `states` and `rows` have a leading axis.
 
-    It runs where they lie: `jax.device_put` brings all three to a GPU, which is worth it for a thousand or more.
+    It runs on the device that holds the arguments. `jax.device_put` moves them to a GPU, which pays off for a thousand
+    vehicles or more.
     """
     return jax.vmap(lambda state, one: replay(monitor, state, one, keep))(states, rows)
 
 
 class StepResult(NamedTuple):
-    """What a live step says of the sample it was just given."""
+    """The verdicts, tests and values of one live sample."""
 
     channel: Int8[np.ndarray, " C"]
     sensor: Int8[np.ndarray, " S"]
@@ -82,7 +83,7 @@ class StepResult(NamedTuple):
 
 
 def nothing_yet(monitor: Monitor) -> StepResult:
-    """What is known before the first sample."""
+    """The result before the first sample."""
     channels, sensors = len(monitor.owner), max(monitor.owner) + 1
     unknown = np.full(channels, UNKNOWN, np.int8), np.full(sensors, UNKNOWN, np.int8)
     nan, none = np.full(channels, np.nan), np.full(0, np.nan)
@@ -107,10 +108,11 @@ def _tell(report: Report) -> tuple[Array, ...]:
 class Stepper:
     """One sample in, one verdict out.
 
-    Two things make a live step cheap. State, sample and answer cross into the compiled step as one vector each. And the
-    step stands in a loop of one round that the compiler cannot see through, because the row itself counts the rounds:
-    nothing of the step can be taken out of it, and XLA compiles the whole of it as one function (see _jax.py). `block`
-    is an example of the residual's private block, for monitors that have one.
+    Two things make a live step fast. State, sample and result are one vector each, so that few arguments are passed to
+    the compiled step. And the step is the body of a loop of one round. The number of rounds is part of the sample, so
+    the compiler does not know it and compiles the whole step as one function (see core/_jax.py).
+
+    `block`: an example of the residual's private block, for monitors that have one.
     """
 
     def __init__(self, monitor: Monitor, block: Any = ()) -> None:
@@ -140,7 +142,7 @@ class Stepper:
             return flat, answer
 
         self._step = jax.jit(step, donate_argnums=0)
-        self._state, _ = self._step(self._state, np.zeros_like(self._row))  # compile; no round changes nothing
+        self._state, _ = self._step(self._state, np.zeros_like(self._row))  # compile; with no round, the state stays
         result = jax.eval_shape(
             lambda flat, row: _tell(monitor.step(restore(flat), unpack(row))[1]), self._state, self._row
         )
@@ -148,10 +150,17 @@ class Stepper:
         self._cuts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True)]
 
     def push(self, time: float, value: Any, fresh: Any = True, block: Any = (), born: Any = False) -> StepResult:
-        """Judge one sample: `time` [s], `value` (C,) in SI with NaN for what is absent; `fresh`, `born` (C,) or one.
+        """Judge one sample.
+
+        Args:
+            time: [s].
+            value: (C,) in SI units, NaN if absent.
+            fresh: (C,) or one for all, which values are new measurements.
+            block: as the example.
+            born: (C,) or one for all, which channels have just appeared.
 
         Raises:
-            ValueError: another number of values than channels, or a block unlike the example.
+            ValueError: not as many values as channels, or a block of another size than the example.
         """
         row, c = self._row, self._channels
         if not hasattr(value, "__len__") or len(value) != c:
@@ -162,7 +171,9 @@ class Stepper:
         row[2 + 2 * c : 2 + 3 * c] = born
         tail, parts = row[2 + 3 * c :], [np.ravel(x) for x in jax.tree.leaves(block)]
         if (size := sum(part.size for part in parts)) != tail.size:
-            raise ValueError(f"push: a block of {size} numbers where the example had {tail.size}; give all of it.")
+            raise ValueError(
+                f"push: the block has {size} numbers, the example had {tail.size}; give a block of the same size."
+            )
         if parts:
             tail[:] = np.concatenate(parts)
         self._state, result = self._step(self._state, row)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int8
 
 from sensorfault.core import html
-from sensorfault.core.clock import clock
+from sensorfault.core.times import clock
 from sensorfault.core.types import VERDICTS
 from sensorfault.events.event import EVENT_HEADS, Event, event_cells
 from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
@@ -24,15 +24,16 @@ def line(log: Log, method: str, events: Sequence[Event]) -> str:
     return f"{log.name!r}: {found} in {clock(log.duration_s)} by {method}, {sensors}"
 
 
-def as_html(log: Log, method: str, events: Sequence[Event], verdict: Int8[np.ndarray, "T S"]) -> str:
-    """The events, and each sensor's share of the time under each verdict."""
+def as_html(log: Log, method: str, events: Sequence[Event], verdict: Int8[np.ndarray, "T S"] | None) -> str:
+    """The events, and each sensor's share of the time under each verdict, where the verdicts on rows were kept."""
     rows = []
-    for i, sensor in enumerate(log.sensors):
+    for i, sensor in enumerate(log.sensors if verdict is not None else ()):
+        assert verdict is not None
         shares = [f"{np.mean(verdict[:, i] == code):.1%}" if len(log) else "" for code in range(len(VERDICTS))]
         rows.append((sensor.name, sum(event.sensor == sensor.name for event in events), *shares))
     found = [html.table(EVENT_HEADS, [event_cells(event) for event in events])] if events else []
-    sensors = html.table(("sensor", "events", *VERDICTS), rows)
-    return html.page(f"Detection {line(log, method, events)}", *found, sensors)
+    sensors = [html.table(("sensor", "events", *VERDICTS), rows)] if rows else []
+    return html.page(f"Detection {line(log, method, events)}", *found, *sensors)
 
 
 def model_line(method: str, sensors: Sequence[Sensor], tick_s: float, summary: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""A fitted model to one file and back, to the bit: safetensors with a readable header. Nothing in it is executed."""
+"""Save a fitted model to one file and load it, bit for bit: safetensors with a JSON header. No code is executed."""
 
 import hashlib
 import json
@@ -31,11 +31,11 @@ Tensors = dict[str, np.ndarray]
 
 
 class ModelError(LogError):
-    """A model file that cannot be used: what is wrong with it, and what to do."""
+    """A model file that cannot be used. One sentence: what is wrong with it, and what to do."""
 
 
 def save(model: Model, path: Path | str) -> None:
-    """Write the model; the file appears whole or not at all.
+    """Write a model to a file, whole or not at all.
 
     The header is JSON under the key `sensorfault`: format, versions, method, channels with units, sensors, summary, the
     monitor's parts, and a digest over header and numbers.
@@ -66,10 +66,11 @@ def save(model: Model, path: Path | str) -> None:
 
 
 def load(path: Path | str) -> Model:
-    """Read a model back.
+    """Read a model that `save` wrote.
 
     Raises:
-        ModelError: not there, not ours, cut short, changed since it was written, or of another format.
+        ModelError: there is no such file, it is another kind of file, truncated, changed since it was written, or of
+            another format.
         TypeError: something else than a path.
     """
     expect_path(path, "load: path")
@@ -82,9 +83,9 @@ def load(path: Path | str) -> Model:
             meta = file.metadata() or {}
             tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
     except (SafetensorError, OSError, ValueError) as error:
-        raise ModelError(f"{path}: not a model file, or cut short ({error}); {refit}.") from None
+        raise ModelError(f"{path}: not a model file, or truncated ({error}); {refit}.") from None
     if "sensorfault" not in meta:
-        raise ModelError(f"{path}: a safetensors file, but not one of sensorfault's; give a file that 'fit' wrote.")
+        raise ModelError(f"{path}: a safetensors file, but not of sensorfault; give a file that 'fit' wrote.")
     text = meta["sensorfault"]
     if meta.get("digest") != _digest(text, tensors):
         raise ModelError(f"{path}: its contents were changed after it was written; {refit}.")
@@ -116,12 +117,12 @@ def load(path: Path | str) -> Model:
 
 
 def _try(model: Model) -> None:
-    """Trace one step, computing nothing: parts that do not fit each other are refused here, not on the road."""
+    """Trace one step without computing it: parts that do not fit together are refused before the model is used."""
     channels = len(model.channels)
     if owners(model.channels, model.sensors) != model.monitor.owner or not model.tick_s > 0:
-        raise ValueError("its channels, sensors or clock do not go together")
+        raise ValueError("its channels, sensors and clock do not match")
     if not channels == len(model.watched) == len(model.sigma):
-        raise ValueError("its channels are not as many as its marks for them")
+        raise ValueError("the number of its channels and of 'watched' or 'sigma' differ")
     none = jnp.zeros(channels, bool)
     block = jax.tree.map(jnp.asarray, model.framing.nothing) if model.framing else ()
     sample = Sample(jnp.zeros(()), jnp.zeros(channels), none, none, none, block)
@@ -130,7 +131,7 @@ def _try(model: Model) -> None:
     if jax.tree.map(jnp.shape, after) != jax.tree.map(jnp.shape, before):
         raise ValueError("a step changes the shape of its state")
     if sum(score.value.shape[0] for score in result.scores) != len(model.tests):
-        raise ValueError("its tests are not as many as their names")
+        raise ValueError("the number of its tests and of their names differ")
 
 
 def _framing(header: dict[str, Any] | None) -> Framing | None:
@@ -155,7 +156,7 @@ def _digest(text: str, tensors: Tensors) -> str:
 
 
 def _encode(thing: Any, name: str, tensors: Tensors) -> Any:
-    """A part as JSON, its arrays put aside under their path in the tree."""
+    """A part as JSON. Its arrays go to `tensors`, under their path in the tree."""
     match thing:
         case eqx.Module() if parts().get(type(thing).__name__) is not type(thing):
             raise TypeError(

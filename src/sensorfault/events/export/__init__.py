@@ -1,4 +1,4 @@
-"""Events for other programs: tables, and recordings that the field's viewers open."""
+"""Write events for other programs: tables, and recordings for viewers."""
 
 from sensorfault.events.export.write import KINDS, check, write_events
 

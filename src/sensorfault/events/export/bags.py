@@ -1,4 +1,4 @@
-"""Events as diagnostic_msgs/DiagnosticArray in a ROS bag, by rosbags."""
+"""Write events as diagnostic_msgs/DiagnosticArray to a ROS bag, with rosbags."""
 
 import shutil
 import tempfile
@@ -20,7 +20,7 @@ def write_bag1(events: Sequence[Event], log: Log, path: Path, source: Path | Non
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores, get_typestore
 
-    path.unlink(missing_ok=True)  # rosbags writes over nothing
+    path.unlink(missing_ok=True)  # rosbags refuses to overwrite a file
     store = get_typestore(Stores.ROS1_NOETIC)
     with Writer(path) as writer:
         connection = writer.add_connection(TOPIC, _TYPE, typestore=store)
@@ -42,16 +42,16 @@ def write_bag2(events: Sequence[Event], log: Log, path: Path, source: Path | Non
 
 
 def appear(path: Path, write: Callable[[Path], None]) -> None:
-    """A folder that appears whole or not at all.
+    """Write a folder, whole or not at all.
 
     Raises:
-        LogError: it is there already.
+        LogError: it exists already.
     """
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as near:
         folder = Path(near) / path.name
         write(folder)
         if path.exists():
-            raise LogError(f"{path} is there already; name a new folder for the bag.")
+            raise LogError(f"{path} exists already; give a new folder for the bag.")
         shutil.move(folder, path)
 
 

@@ -1,7 +1,7 @@
-"""Events as annotations in an MCAP: a log of begins and ends, and the state of each sensor.
+"""Write events as annotations to an MCAP file: a log of starts and ends, and the state of each sensor.
 
-The log's schema is Foxglove's own, of foxglove-sdk. The file is written by mcap, which has a place for all that a
-recording holds: foxglove-sdk's writer has none for the time when a message was published, and none for attachments.
+The log's schema is that of Foxglove, from foxglove-sdk. The file is written with mcap, because foxglove-sdk's writer
+cannot write the time when a message was published, nor attachments.
 """
 
 import json
@@ -19,11 +19,11 @@ _OK = "ok"
 
 
 def write_mcap(events: Sequence[Event], log: Log, path: Path, source: Path | None) -> None:
-    """All that `source` holds, as far as it is whole, and two topics beside it, each message at its time.
+    """Write a copy of `source`, as far as it can be read, with two more topics.
 
-    `/sensorfault/events` (foxglove.Log) for the log panel; `/sensorfault/states` (JSON) has for each sensor, and for
-    the vehicle's motion, `ok` or the kind of fault, at the beginning, whenever one changes, and at the end, where
-    viewers would else let their lines break off: for state transitions.
+    `/sensorfault/events` (foxglove.Log) is for the log panel. `/sensorfault/states` (JSON) is for state transitions:
+    for each sensor and for the vehicle's motion, `ok` or the kind of fault. It has a message at the beginning, at every
+    change, and at the end, so that viewers draw the last state to the end of the log.
     """
     from mcap.writer import Writer
 
@@ -40,7 +40,7 @@ def write_mcap(events: Sequence[Event], log: Log, path: Path, source: Path | Non
 
 
 class _Own:
-    """The messages of ours, in order of time."""
+    """The messages of the two topics, in order of time."""
 
     def __init__(self, writer: Any, events: Sequence[Event], log: Log) -> None:
         from foxglove.messages import Log as LogMessage
@@ -54,7 +54,7 @@ class _Own:
         self._left = list(_said(events, log))[::-1]
 
     def until(self, time_ns: float) -> None:
-        """Write those that are no later."""
+        """Write those up to this time."""
         while self._left and self._left[-1][0] <= time_ns:
             at, topic, data = self._left.pop()
             self._writer.add_message(self._channels[topic], at, data, at)
@@ -87,7 +87,7 @@ def _text(moment: Moment) -> bytes:
 
 
 def _states(log: Log, open: Sequence[Event]) -> bytes:
-    """Sensor -> `ok` or the kind of the first of its faults that lasts."""
+    """Sensor -> `ok`, or the kind of the first of its ongoing faults."""
     state = dict.fromkeys(_names(log), _OK)
     for event in reversed(open):
         state["motion" if event.subject == "motion" else event.sensor or "unknown"] = event.kind

@@ -1,4 +1,4 @@
-"""A recording written once more, as far as it is whole."""
+"""Copy a recording, as far as it can be read."""
 
 from collections.abc import Callable, Hashable
 from pathlib import Path
@@ -10,7 +10,7 @@ from sensorfault.logs.readers.telling import TellingFile
 
 
 def profile_of(source: Path) -> str:
-    """What the recording's header says of its kind: `ros2`."""
+    """The profile in the recording's header, such as `ros2`."""
     from mcap.records import Header
 
     first = next(_whole(source), None)
@@ -18,14 +18,14 @@ def profile_of(source: Path) -> str:
 
 
 def copy(source: Path, writer: Any, before: Callable[[int], None]) -> None:
-    """All files of a recording; `before`: hears each message's time [ns] before it."""
+    """Copy all files of a recording; `before` is called with each message's time [ns] before it is written."""
     known: dict[Hashable, int] = {}
     for part in parts_of(source):
         _copy(part, writer, before, known)
 
 
 def _copy(part: Path, writer: Any, before: Callable[[int], None], known: dict[Hashable, int]) -> None:
-    """Messages with all their times, attachments and metadata; `known`: schemas and channels that are written."""
+    """Copy messages with all their times, attachments and metadata; `known`: schemas and channels written so far."""
     from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
     def once(register: Callable[..., int], *about: Any) -> int:
@@ -55,7 +55,7 @@ def _copy(part: Path, writer: Any, before: Callable[[int], None], known: dict[Ha
 
 
 def _whole(source: Path) -> Any:
-    """The records that can be read; where they cannot, reading the log has told."""
+    """The records that can be read. Damage was reported when the log was read."""
     with TellingFile(source, lambda share: None) as file:
         file.seek(len(MAGIC))
         for record, _ in records(file, source.stat().st_size, lambda where: None, lambda where: None):

@@ -1,4 +1,4 @@
-"""Events as moments: one that begins and one that ends, on the recording's clock."""
+"""The moments at which events begin and end, on the recording's clock."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,11 @@ NS = 10**9
 
 @dataclass(frozen=True)
 class Moment:
-    """`time_ns`: Unix time where the log knows it, else since its zero. `open`: what lasts then, in order of begin."""
+    """When an event begins or ends.
+
+    `time_ns`: Unix time if the log knows it, else since the log's zero [ns]. `open`: the events that are ongoing then,
+    in order of their start.
+    """
 
     time_ns: int
     event: Event
@@ -20,7 +24,7 @@ class Moment:
 
 
 def moments(events: Sequence[Event], log: Log) -> list[Moment]:
-    """Every begin and end in order of time; at one time ends come first. An event that goes on has no end."""
+    """Every start and end in order of time; at the same time, ends come first. An ongoing event has no end."""
     zero = log.epoch_s or 0.0
     result = [(event.start_s, True, event) for event in events]
     result += [(event.end_s, False, event) for event in events if event.end_s is not None]
@@ -33,7 +37,7 @@ def moments(events: Sequence[Event], log: Log) -> list[Moment]:
 
 
 def sentence(event: Event, begins: bool) -> str:
-    """`bias on gnss.altitude begins (score 12.3, limit 8.4, drone)`."""
+    """`offset on gnss.altitude begins (score 12.3, limit 8.4, drone)`."""
     score = f"score {event.peak_score:.3g}, " if event.peak_score is not None else ""
     limit = f"limit {event.limit:.3g}, " if event.limit is not None else ""
     return f"{event.kind} on {event.where} {'begins' if begins else 'ends'} ({score}{limit}{event.method})"

@@ -1,4 +1,4 @@
-"""Events as JSON lines, CSV and Parquet: one a line, the fields of Event as they are."""
+"""Write events as JSON lines, CSV or Parquet: one event a line, with the fields of Event."""
 
 import json
 from collections.abc import Sequence

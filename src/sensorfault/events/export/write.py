@@ -1,4 +1,4 @@
-"""Write fault events to a file of the kind that its name says."""
+"""Write fault events to a file; its name says which format."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -25,27 +25,27 @@ _WORDS = ".jsonl, .csv, .parquet, .mcap (annotations), .bag (ROS 1) or a new fol
 
 
 def check(path: Path) -> None:
-    """Whether events can be written under this name, before the work is done.
+    """Check, before the work is done, that events can be written to this path.
 
     Raises:
-        LogError: another kind of file, or a folder that is there already.
+        LogError: an unknown format, or a folder that exists already.
         MissingLibrary: this kind of file needs a library that is not installed.
     """
     kind = path.suffix.lower()
     if kind not in KINDS:
-        raise LogError(f"{path}: events are written as {_WORDS}, not as '{path.suffix}'; change the name.")
+        raise LogError(f"{path}: events are written as {_WORDS}, not as '{path.suffix}'; give another name.")
     if kind in _NEEDS:
         require(f"{path}: writing it", _NEEDS[kind])
     if kind == "" and path.exists():
-        raise LogError(f"{path} is there already; name a new folder for the bag, or a file with one of {_WORDS}.")
+        raise LogError(f"{path} exists already; give a new folder for the bag, or a file with one of {_WORDS}.")
 
 
 def write_events(events: Sequence[Event], log: Log, path: str | Path, source: Path | None = None) -> None:
-    """Write events; the file appears whole or not at all.
+    """Write events to a file, whole or not at all.
 
     Args:
-        events: of one log, in its seconds.
-        log: what they were found in; where it knows Unix time, recordings are stamped with it, else from 0.
+        events: the events of one log, with times in seconds of the log.
+        log: the log they were found in. If it knows Unix time, messages in recordings have it; else they start at 0.
         path: .jsonl, .csv, .parquet; .mcap for annotations; .bag for ROS 1, or a new folder for a ROS 2 bag, of
             diagnostic_msgs/DiagnosticArray.
         source: for .mcap: a recording whose messages are copied beside the annotations.

@@ -1,0 +1,21 @@
+"""The JSON of a detection."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sensorfault.runtime.result import Detection
+
+
+def of_detection(found: "Detection") -> dict[str, Any]:
+    """What `detect` and `report` write with --json."""
+    assert found.model is not None
+    return {
+        "log": found.log.name,
+        "method": found.method,
+        "judged_s": [float(found.log.time[0]), float(found.log.time[-1])],
+        "fitted_on_s": found.fitted_on_s,
+        "watched": [channel.path for channel, w in zip(found.model.channels, found.watched, strict=True) if w],
+        "not_watched": found.model.summary.get("not_watched", {}),
+        "notes": list(found.notes),
+        "events": [event.as_dict() for event in found.events],
+    }

@@ -1,0 +1,42 @@
+"""Detect the faults of a log, with progress."""
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sensorfault.cli import fitting, limits, reading, show
+
+if TYPE_CHECKING:
+    from sensorfault.logs import Log
+    from sensorfault.runtime.detector import See
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.result import Detection
+
+
+def detect(model: "Model", log: "Log", doing: str = "judging") -> "Detection":
+    """Judge a log that has been read."""
+    from sensorfault.runtime.detect import detect
+
+    with show.progress() as bar:
+        task = bar.add_task(doing, total=1.0)
+        return detect(model, log, lambda share: bar.update(task, completed=share))
+
+
+def detect_log(
+    path: Path, vehicle: Path | None, by_parts: bool | None, choice: fitting.Choice, see: "See | None" = None
+) -> "Detection":
+    """Read and judge a log, by the chosen model or by its own; print what reading found, and limits of its own model.
+
+    `by_parts`: see `reading.in_parts`. `see` gets each part that was judged, as in `detect_file`.
+    """
+    from sensorfault.runtime.streaming import detect_parts
+
+    parts = reading.in_parts(path, by_parts)
+    read = partial(reading.read_in, parts, path, vehicle)
+    with show.patient("judging") as judged:
+        model = fitting.model_or_fit(choice)
+        found = detect_parts(read, model, see, choice.learn, whole=not parts, progress=None if parts else judged)
+    if found.fitted_on_s is not None:
+        for sentence in limits.of_detection(found):
+            show.say(sentence)
+    return found

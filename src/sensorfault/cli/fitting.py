@@ -1,0 +1,66 @@
+"""Find the model that judges a log: load it, or fit it on the log's beginning."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sensorfault.cli import limits, show
+
+if TYPE_CHECKING:
+    from sensorfault.logs import Log
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.streaming import Fit
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What the user chose: a model file; or a method, and the share of the log to fit it on.
+
+    Raises:
+        LogError: the share is not one.
+    """
+
+    path: Path | None
+    method: str
+    learn: float
+    seed: int
+
+    def __post_init__(self) -> None:
+        from sensorfault.logs import LogError
+
+        if not 0.05 <= self.learn <= 0.95:  # click accepts NaN as a number
+            raise LogError(f"--learn is {self.learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
+
+
+def model_or_fit(choice: Choice) -> "Model | Fit":
+    """The stored model, or what fits one on a log."""
+    if choice.path is not None:
+        from sensorfault.runtime.store import load
+
+        return load(choice.path)
+
+    def fitted(log: "Log") -> "Model":
+        from sensorfault.methods.fit import fit
+
+        with show.progress() as bar:
+            task = bar.add_task(f"fitting {choice.method}", total=None)
+            model = fit(log, choice.method, held_out=0.0, seed=choice.seed)
+            bar.update(task, total=1, completed=1)
+        return model
+
+    return fitted
+
+
+def model_and_rest(choice: Choice, log: "Log") -> "tuple[Model, Log]":
+    """The model, and the part of a whole log that it was not fitted on."""
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.streaming import beginning_s
+
+    model = model_or_fit(choice)
+    if isinstance(model, Model):
+        return model, log
+    start_s, cut_s = float(log.time[0]), beginning_s(log, choice.learn)
+    model = model(log.between(end_s=cut_s))
+    for sentence in limits.of_own_model(model, start_s, cut_s):
+        show.say(sentence)
+    return model, log.between(cut_s)

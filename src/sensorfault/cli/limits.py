@@ -1,0 +1,109 @@
+"""Sentences about a model: what it watches, what it leaves out, and what is known of its false alarms."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from sensorfault.core.times import clock
+
+if TYPE_CHECKING:
+    from sensorfault.runtime.model import Model
+    from sensorfault.runtime.result import Detection
+
+WATCHED_SHOWN = 24
+SUSPECTS_SHOWN = 10
+
+
+def of_detection(detection: "Detection") -> tuple[str, ...]:
+    """The limits of the model that judged a log."""
+    assert detection.model is not None
+    if detection.fitted_on_s is not None:
+        return of_own_model(detection.model, *detection.fitted_on_s)
+    return of_model(detection.model)
+
+
+def of_own_model(model: "Model", start_s: float, end_s: float) -> tuple[str, ...]:
+    """The limits of a model that was fitted on the beginning of the log it judges, from `start_s` to `end_s`."""
+    return (
+        f"No model was given: {model.method} was fitted on {clock(start_s)} to {clock(end_s)} of this log, "
+        "which is assumed healthy; only the rest was checked.",
+        "Faults in that part cannot be found, and the false-alarm rate is unknown; "
+        "to change both, fit a model on a drive you trust with 'sensorfault fit'.",
+        *suspects(model),
+        *not_watched(model),
+    )
+
+
+def of_model(model: "Model") -> tuple[str, ...]:
+    """The limits of a model from a file."""
+    fitted = f"Limits: fitted by {model.method} on {model.summary.get('training_log', 'another log')}."
+    return (fitted, *rate(model), *not_watched(model))
+
+
+def rate(model: "Model") -> tuple[str, ...]:
+    """What is known of the false-alarm rate."""
+    known = model.summary
+    if "alarms_per_hour" not in known:
+        return ("False-alarm rate: not measured.",)
+    return (f"False alarms on the part held out: {alarms(known['held_out_alarms'], known['held_out_s'])}.",)
+
+
+def alarms(count: int, seconds: float) -> str:
+    """What `count` false alarms in some seconds of healthy data say of their rate."""
+    from sensorfault.numerics.poisson import rate_below
+
+    hours = seconds / 3600
+    below = f"fewer than {rate_below(count, hours):.3g} an hour with 95 % confidence"
+    if count:
+        return f"{count} in {_duration(seconds)}, {count / hours:.3g} an hour ({below})" if hours else str(count)
+    if hours < 1:
+        return f"none in {_duration(seconds)}: too short to promise a rate"
+    return f"none in {_duration(seconds)}: {below}"
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.1f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
+
+
+def watches(paths: list[str]) -> str:
+    """The channels that are watched; of very many the first."""
+    many = f" and {len(paths) - WATCHED_SHOWN} more" if len(paths) > WATCHED_SHOWN else ""
+    return f"Watches {', '.join(paths[:WATCHED_SHOWN])}{many}."
+
+
+def smallest(model: "Model") -> tuple[str, ...]:
+    """The smallest step that the model can find, and the method's warning, where the method knows them."""
+    steps: Mapping[str, float] = model.summary.get("smallest_step_m", {})
+    if not steps:
+        return ()
+    sizes = ", ".join(f"{size:.1f} m {when}" for when, size in steps.items())
+    warning = model.summary.get("inert")
+    return (f"Smallest step found nine times out of ten: {sizes}.", *([warning] if warning else []))
+
+
+def suspects(model: "Model") -> tuple[str, ...]:
+    """The training data that were left out of the fit because they look faulty."""
+    found: list[dict[str, Any]] = model.summary.get("training_suspects", [])
+    if not found:
+        return ()
+    spans = "; ".join(
+        f"{one['reason']} on {one['channel']}, {clock(one['start_s'])} to {clock(one['end_s'])}"
+        for one in found[:SUSPECTS_SHOWN]
+    )
+    more = f" and {len(found) - SUSPECTS_SHOWN} more" if len(found) > SUSPECTS_SHOWN else ""
+    return (f"Left out of the fit because it looks faulty: {spans}{more}.",)
+
+
+def not_watched(model: "Model") -> tuple[str, ...]:
+    """Parts of the method that this log does not allow; channels that are checked for dropouts only; and why."""
+    parts: dict[str, str] = model.summary.get("cannot", {})
+    missing = tuple(f"Not running {part}: {reason}" for part, reason in parts.items())
+    reasons: dict[str, str] = model.summary.get("not_watched", {})
+    if not reasons:
+        return missing
+    by_reason: dict[str, list[str]] = {}
+    for path, reason in reasons.items():
+        by_reason.setdefault(reason, []).append(path)
+    silent = "; ".join(f"{', '.join(paths)} ({reason})" for reason, paths in by_reason.items())
+    return (*missing, f"Checked for dropouts only: {silent}.")
