@@ -1,21 +1,26 @@
 """The page of a study: its tables, figures and remarks in one HTML file that opens anywhere, offline."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from string import Template
 
 from sensorfault.evaluation.plain import plain
-from sensorfault_studies.catalog import Study
 from sensorfault_studies.findings import Figure, Findings
-from sensorfault_studies.tables import PAPER, Cell, Table, grouped, tables, thinned
+from sensorfault_studies.tables import PAPER, Cell, Table, grouped, tables, thinned, titled
 
 
-def page(study: Study, findings: Findings, facts: str) -> str:
-    """The page as text; `facts`: commit and effort in one line.
+def page(title: str, experiments: Mapping[str, str], findings: Findings, facts: str) -> str:
+    """The page as text.
 
-    A figure whose name begins with an experiment's stands below its tables; the others stand behind all of them.
+    A figure whose name begins with an experiment's code stands below its tables; the others stand at the end.
+
+    Args:
+        title: of the study.
+        experiments: the title of each experiment by its code.
+        findings: what to show.
+        facts: commit and effort in one line.
     """
     from plotly.offline import get_plotlyjs
 
@@ -23,7 +28,7 @@ def page(study: Study, findings: Findings, facts: str) -> str:
     codes = [code for code, _ in grouped(findings.rows, lambda row: row.experiment)]
     home = {figure.name: _home(figure, codes) for figure in findings.figures}
     sections = [
-        f"<h2>{escape(titled(study, code))}</h2>"
+        f"<h2>{escape(titled(experiments, code))}</h2>"
         + "".join(_table(table) for table in tables(rows))
         + _figures([figure for figure in findings.figures if home[figure.name] == code])
         for code, rows in grouped(findings.rows, lambda row: row.experiment)
@@ -32,7 +37,7 @@ def page(study: Study, findings: Findings, facts: str) -> str:
     sections += [f"<h2>Figures</h2>{_figures(rest)}"] if rest else []
     charts = {f"figure-{figure.name}": figure.plot for figure in findings.figures}
     return Template(here.joinpath("page.html").read_text("utf-8")).substitute(
-        title=escape(f"{study.paper}: {study.title}"),
+        title=escape(title),
         style=shared.joinpath("page.css").read_text("utf-8") + here.joinpath("page.css").read_text("utf-8"),
         facts=escape(facts),
         experiments="".join(sections),
@@ -41,11 +46,6 @@ def page(study: Study, findings: Findings, facts: str) -> str:
         plotly=get_plotlyjs(),
         script=shared.joinpath("page_base.js").read_text("utf-8") + here.joinpath("page.js").read_text("utf-8"),
     )
-
-
-def titled(study: Study, code: str) -> str:
-    """An experiment's code and title."""
-    return f"{code} {study.experiments[code]}" if code in study.experiments else code
 
 
 def _home(figure: Figure, codes: Sequence[str]) -> str | None:

@@ -1,7 +1,7 @@
 """A study's rows as tables for people: methods down, magnitudes or metrics across, the paper's beside ours."""
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeVar
@@ -154,6 +154,11 @@ def grouped(rows: Iterable[Row], key: Callable[[Row], Key]) -> list[tuple[Key, l
     for row in rows:
         found.setdefault(key(row), []).append(row)
     return list(found.items())
+
+
+def titled(experiments: Mapping[str, str], code: str) -> str:
+    """An experiment's code and its title, if it has one."""
+    return f"{code} {experiments[code]}" if code in experiments else code
 
 
 def thinned(labels: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:

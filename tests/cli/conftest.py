@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import fitted
-from sensorfault.cli import main
+from sensorfault.cli import main, studies
 from sensorfault.logs.table import Log
 
 
@@ -43,6 +43,34 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
         return Said(code, said.out, said.err)
 
     return command
+
+
+@dataclass(frozen=True)
+class Offer:
+    """An entry point that gives this, or raises it."""
+
+    given: object
+    value: str = "somewhere:thing"
+    name: str = "tests"
+    dist: None = None
+
+    def load(self) -> object:
+        if isinstance(self.given, Exception):
+            raise self.given
+        return self.given
+
+
+Install = Callable[..., None]
+
+
+@pytest.fixture
+def install(monkeypatch: pytest.MonkeyPatch) -> Install:
+    """Make the only installed studies those of entry points that give these."""
+
+    def only(*given: object) -> None:
+        monkeypatch.setattr(studies, "entry_points", lambda group: [Offer(one) for one in given])
+
+    return only
 
 
 def write_csv(path: Path, log: Log) -> Path:

@@ -7,18 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from cli.conftest import Run
+from cli.conftest import Install, Run
 from sensorfault.logs import LogError
-from sensorfault_studies import catalog
-from sensorfault_studies.catalog import Study
 from sensorfault_studies.findings import Effort, Figure, Findings, Row
+from sensorfault_studies.study import Study
 
 SHORT = Row("X1", "a drive", "injected", "", "good", "spike", 2.0, "auc", 0.912, 0.021, 3, 0.99)
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[Effort]:
-    """Put a tiny study into the catalog; the efforts it was asked for."""
+def asked(install: Install) -> list[Effort]:
+    """A tiny study is the only one installed; the efforts it was asked for."""
     efforts: list[Effort] = []
 
     def study(effort: Effort) -> Findings:
@@ -30,7 +29,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Effort]:
         return Findings((SHORT, fit, rate), (figure,), ("The margin [of the paper] does not appear.",))
 
     tiny = Study("tiny2000", "Nothing much", "Nobody 2000", study, {"X1": "Spikes", "X2": "The rest"})
-    monkeypatch.setattr(catalog, "STUDIES", {"tiny2000": tiny})
+    install(tiny)
     return efforts
 
 
@@ -85,7 +84,7 @@ def refused(run: Run, asked: list[Effort], *words: object) -> str:
 
 
 def test_bad_words_are_one_sentence_before_any_work(run: Run, asked: list[Effort]) -> None:
-    assert "this version has tiny2000" in refused(run, asked, "min2099")
+    assert "take one of tiny2000, or all" in refused(run, asked, "min2099")
     assert "--seeds" in refused(run, asked, "tiny2000", "--seeds", "0")
     Path("taken").write_text("mine")
     assert "taken is a file" in refused(run, asked, "tiny2000", "--out", "taken")
@@ -96,20 +95,13 @@ def test_bad_words_are_one_sentence_before_any_work(run: Run, asked: list[Effort
     assert Path("taken").read_text() == "mine"
 
 
-def test_nothing_is_written_where_the_work_fails(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_written_where_the_work_fails(run: Run, install: Install) -> None:
     def study(effort: Effort) -> Findings:
         raise LogError("road/dresden_50hz: this study needs these real logs; set SENSORFAULT_DATA to where they lie.")
 
-    monkeypatch.setattr(catalog, "STUDIES", {"tiny2000": Study("tiny2000", "", "", study, {})})
+    install(Study("tiny2000", "", "", study, {}))
     said = run("reproduce", "tiny2000", "--out", "results", "--json", "rows.json")
     assert said.code == 2
     assert said.err.strip().splitlines()[-1].startswith("sensorfault: road/dresden_50hz: this study needs")
     assert not Path("results").exists()
     assert not Path("rows.json").exists()
-
-
-def test_the_real_catalog_without_data(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("SENSORFAULT_DATA", str(tmp_path / "empty"))
-    said = run("reproduce", "min2021")
-    assert said.code == 2
-    assert "set SENSORFAULT_DATA" in said.err

@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -11,13 +10,11 @@ from pathlib import Path
 import pytest
 
 from sensorfault.logs import LogError
-from sensorfault_studies import commit as commits
-from sensorfault_studies.catalog import STUDIES
-from sensorfault_studies.commit import commit
 from sensorfault_studies.data import real
 from sensorfault_studies.findings import SOURCES, Effort, Figure, Findings, Row
 from sensorfault_studies.min2021 import study as min2021
-from sensorfault_studies.page import page
+from sensorfault_studies.multistep.study import STUDY as MULTISTEP
+from sensorfault_studies.study import Reproduction
 from sensorfault_studies.tables import PAPER, Cell, ours, printed, tables, thinned
 
 ONE = Row("A1", "dresden", "injected", "L32", "pca", "spike", 1.0, "auc", 0.8412, 0.0123, 5, 0.9)
@@ -87,7 +84,7 @@ def test_the_papers_number_stands_beside_ours() -> None:
 
 def test_magnitudes_stand_across_and_methods_below_each_other() -> None:
     (table,) = tables(sweep())
-    assert table.title == "short by magnitude [σ]"
+    assert table.title == "spike by magnitude [σ]"
     assert table.source == "real logs with injected faults"
     assert (table.labels, table.heads) == (("data", "metric", "method", "condition"), ("1", "3", "10"))
     assert [labels[:3] for labels, _ in table.rows[:4]] == [
@@ -191,7 +188,7 @@ class Seen(HTMLParser):
 
 
 def shown(findings: Findings) -> Seen:
-    return Seen(page(STUDIES["min2021"], findings, "commit 123 & more"))
+    return Seen(Reproduction(min2021.STUDY, findings).page("commit 123 & more"))
 
 
 def test_the_page_has_tables_figures_and_remarks() -> None:
@@ -212,13 +209,13 @@ def test_the_page_has_tables_figures_and_remarks() -> None:
 def test_a_figure_stands_with_the_experiment_whose_whole_name_it_bears() -> None:
     rows = tuple(replace(ONE, experiment=code) for code in ("D", "D-slow"))
     figures = tuple(Figure(name, f"Figure {name}", "", {"data": [], "layout": {}}) for name in ("d-slow_b", "d_a"))
-    text = page(replace(STUDIES["multistep"]), Findings(rows, figures), "")
+    text = Reproduction(MULTISTEP, Findings(rows, figures)).page("")
     places = [text.index(part) for part in ("Figure d_a", "<h2>D-slow", "Figure d-slow_b")]
     assert places == sorted(places)
 
 
 def test_the_page_asks_nobody_for_anything() -> None:
-    text = page(STUDIES["min2021"], Findings((ONE,)), "")
+    text = Reproduction(min2021.STUDY, Findings((ONE,))).page("")
     assert "default-src 'none'" in text
     outside = [attrs for _, attrs in Seen(text).tags if {"src", "href"} & attrs.keys()]
     assert not outside
@@ -234,22 +231,6 @@ def test_words_of_a_study_stay_words() -> None:
     assert " ".join(seen.words).count(evil) >= 8
 
 
-def test_the_commit_is_the_checkouts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert commit(tmp_path) == commits._version()  # no checkout
-    assert re.fullmatch(r"\d+\.\d+\.\d+.*", commits._version())
-    (tmp_path / ".git").mkdir()
-    assert commit(tmp_path) == commits._version()  # a broken one
-    monkeypatch.setenv("PATH", str(tmp_path))
-    assert commit() == commits._version()  # git is absent
-
-
-def test_the_commit_is_a_hash() -> None:
-    home = Path(commits.__file__).parents[2]
-    if not (home / ".git").exists():
-        pytest.skip("needs a checkout")
-    assert re.fullmatch(r"[0-9a-f]{40}(-dirty)?", commit())
-
-
 def test_real_logs_that_are_not_there_are_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SENSORFAULT_DATA", str(tmp_path))
     with pytest.raises(LogError, match="needs these real logs; set SENSORFAULT_DATA"):
@@ -263,7 +244,7 @@ def test_a_study_says_so_before_it_works(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setenv("SENSORFAULT_DATA", str(tmp_path))
     monkeypatch.setattr(min2021, "EXPERIMENTS", {"A1": lambda effort: pytest.fail("it went to work")})
     with pytest.raises(LogError, match="gnss_imu_drive0708"):
-        STUDIES["min2021"].run(Effort())
+        min2021.STUDY.run(Effort())
 
 
 def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -279,9 +260,9 @@ def test_the_experiments_add_up_in_order(tmp_path: Path, monkeypatch: pytest.Mon
 
         return run
 
-    assert list(min2021.EXPERIMENTS) == list(STUDIES["min2021"].experiments) == ["A1", "A2", "A3", "A4"]
+    assert list(min2021.EXPERIMENTS) == list(min2021.STUDY.experiments) == ["A1", "A2", "A3", "A4"]
     monkeypatch.setattr(min2021, "EXPERIMENTS", {code: experiment(code) for code in ("A1", "A2")})
-    findings = STUDIES["min2021"].run(Effort(7, tell=lambda doing, share: result.append((doing, share))))
+    findings = min2021.STUDY.run(Effort(7, tell=lambda doing, share: result.append((doing, share))))
     assert [(row.experiment, row.seeds) for row in findings.rows] == [("A1", 7), ("A2", 7)]
     assert [figure.name for figure in findings.figures] == ["a1-f", "a2-f"]
     assert findings.remarks == ("A1", "A2")

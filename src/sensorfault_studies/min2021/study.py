@@ -9,6 +9,7 @@ from sensorfault_studies.min2021.bias_miss import bias_miss
 from sensorfault_studies.min2021.jams import jams
 from sensorfault_studies.min2021.normality import normality
 from sensorfault_studies.min2021.shorts import shorts
+from sensorfault_studies.study import Study
 
 DATA = ("road/dresden_50hz", "road/gnss_imu_drive0708", "road/comma2k19_rav4")
 EXPERIMENTS: dict[str, Callable[[Effort], Findings]] = {"A1": shorts, "A2": jams, "A3": normality, "A4": bias_miss}
@@ -46,3 +47,17 @@ def _part(tell: Callable[[str, float], None], code: str, i: int, count: int) -> 
         tell(said, (i + min(max(share, 0.0), 1.0)) / count)
 
     return part
+
+
+STUDY = Study(
+    "min2021",
+    "Shorts, jams and abnormal motion of a car",
+    "Min et al. 2021",
+    study,
+    {
+        "A1": "Shorts of gyro and accelerometer",
+        "A2": "Jams of the position",
+        "A3": "Abnormal motion: is the residual normal?",
+        "A4": "Bias and miss",
+    },
+)

@@ -10,6 +10,7 @@ from sensorfault_studies.multistep.contenders import NETWORK
 from sensorfault_studies.multistep.drift import PRINTED, Drift, drifts
 from sensorfault_studies.multistep.figures import SLOW, of_drift
 from sensorfault_studies.multistep.remarks import remarks
+from sensorfault_studies.study import Study
 
 STEPPED = 0.8  # share of the work
 PAPER = {  # of the mean over all slopes, and of figure 7; delays from the onset at step 500
@@ -42,3 +43,16 @@ def rows_of(result: Drift) -> Iterator[Row]:
         own = row.method == NETWORK and row.condition.startswith(PRINTED)
         paper = PAPER.get((row.condition.split()[-1], row.magnitude), {}) if own else {}
         yield replace(row, paper=paper.get(row.metric))
+
+
+STUDY = Study(
+    "multistep",
+    "Incipient drift of an aircraft's height, seen by an observer of many steps",
+    "Wang S. et al.",
+    study,
+    {
+        "D": "Ramps, observed over N steps",
+        "D-slow": "Slow drift against a barometer, over a minute or more",
+        "D-who": "Who is accused when a height drifts",
+    },
+)

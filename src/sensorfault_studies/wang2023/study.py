@@ -5,6 +5,7 @@ from dataclasses import replace
 from sensorfault_studies.data import real
 from sensorfault_studies.findings import Effort, Findings
 from sensorfault_studies.numbers import Numbers
+from sensorfault_studies.study import Study
 from sensorfault_studies.wang2023 import drive, nlos, smartloc, walk
 from sensorfault_studies.wang2023.drives import CONDITIONS, DATA, EXPERIMENT, judged
 from sensorfault_studies.wang2023.remarks import of_drives, of_rides
@@ -36,3 +37,12 @@ def study(effort: Effort) -> Findings:
 
 def _part(effort: Effort, begin: float, share: float) -> Effort:
     return replace(effort, tell=lambda doing, done: effort.tell(doing, begin + share * done))
+
+
+STUDY = Study(
+    "wang2023",
+    "Faulty satellites of a train, one at a time or half of them",
+    "Wang et al. 2023",
+    study,
+    {"C": "A filter of satellites and inertial unit, and who is left out of it"},
+)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from sensorfault_studies.data import real
 from sensorfault_studies.findings import Effort, Findings, Row
+from sensorfault_studies.study import Study
 from sensorfault_studies.xu2023 import ranging, rules
 from sensorfault_studies.xu2023.figures import of_missions
 from sensorfault_studies.xu2023.missions import CONDITIONS, Result, judged
@@ -51,3 +52,16 @@ def rows_of(result: Result) -> Iterator[Row]:
         paper |= {"accuracy": (tp + tn) / sum(printed), "precision": tp / (tp + fp), "recall": tp / (tp + fn)}
         paper |= {"fpr": fp / (tn + fp), "fnr": fn / (tp + fn)}
         yield replace(row, paper=paper.get(row.metric))
+
+
+STUDY = Study(
+    "xu2023",
+    "Wrong ranges under water, and fuzzy rules that predict by how much",
+    "Xu et al. 2023",
+    study,
+    {
+        "E": "Two leaders, one follower",
+        "E-rules": "What can be learned of a range's error, every range taken in",
+        "E-ranging": "Real ranges: walkers by radio, robots to landmarks, a dive by sound",
+    },
+)

@@ -1,4 +1,4 @@
-"""Which code a study ran on."""
+"""Which version of the code a study ran on."""
 
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
@@ -13,7 +13,7 @@ def commit(checkout: Path | None = None) -> str:
     Args:
         checkout: by default the one that this file lies in, if it is one.
     """
-    home = checkout or Path(__file__).parents[2]
+    home = checkout or Path(__file__).parents[3]
     if (home / ".git").exists():
         try:
             done = subprocess.run(_DESCRIBE, cwd=home, capture_output=True, text=True, timeout=10, check=True)
