@@ -4,13 +4,16 @@ import json
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 
 import click
 import pytest
 from click.testing import CliRunner
 
 import fitted
+import sensorfault.cli
 from cli.conftest import write_csv
 from sensorfault.cli import cli
 from sensorfault.faults.fault import Fault
@@ -33,6 +36,11 @@ OPTIONS = {
 
 def test_the_verbs_are_those_of_the_issue() -> None:
     assert set(VERBS) >= set(OPTIONS)
+
+
+def test_no_verb_is_forgotten() -> None:
+    modules = (import_module(module.name) for module in iter_modules(sensorfault.cli.__path__, "sensorfault.cli."))
+    assert {module.__name__.split(".")[-1] for module in modules if hasattr(module, "command")} == set(VERBS)
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -81,6 +89,33 @@ def test_help_and_version_import_nothing_slow() -> None:
     slow = {"jax", "jaxlib", "equinox", "numpy", "scipy", "polars", "plotly", "rich", "safetensors"}
     assert not loaded & slow
     assert "sensorfault, version" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "unasked"),
+    [
+        (["init", "drive.csv"], {"jax", "equinox", "scipy", "plotly", "pyulog", "pymavlink", "asammdf"}),
+        (["reproduce", "--help"], {"jax", "numpy", "polars", "sensorfault_studies"}),
+        (["nosuch"], {"jax", "numpy", "polars", "sensorfault.cli.demo"}),
+        (["--version"], {"jax", "numpy", "polars", "sensorfault.cli.demo", "sensorfault.cli.reproduce"}),
+        (["demo", "--help"], {"jax", "numpy", "polars", "sensorfault.cli.detect", "sensorfault.cli.reproduce"}),
+    ],
+)
+def test_a_verb_imports_what_it_needs(tmp_path: Path, recorded: bytes, words: list[str], unasked: set[str]) -> None:
+    (tmp_path / "drive.csv").write_bytes(recorded)
+    code = (
+        "import sys\n"
+        "from sensorfault.cli import main\n"
+        f"sys.argv = ['sensorfault', *{words}]\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "print('\\n' + ' '.join(sys.modules))\n"
+    )
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert "click" in loaded
+    assert not loaded & unasked
 
 
 def test_a_process_ends_with_the_code_and_the_sentence() -> None:

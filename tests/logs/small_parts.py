@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from unittest.mock import patch
 
-from sensorfault.logs.readers import csv, dataflash_pieces, dataflash_text, parquet, telling, topics, ulog_load
+from sensorfault.logs.readers import csv, dataflash_load, dataflash_text, parquet, telling, topics, ulog_load
 
 _SIZES = {
     (csv, "_PART_BYTES"): 8,
@@ -12,7 +12,7 @@ _SIZES = {
     (topics, "PART"): 1,
     (telling, "_BUFFER_BYTES"): 1,
     (ulog_load, "PART"): 1,
-    (dataflash_pieces, "PIECE_BYTES"): 5,
+    (dataflash_load, "PIECE_BYTES"): 5,
     (dataflash_text, "PART_CELLS"): 2,
 }
 

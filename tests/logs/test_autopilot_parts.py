@@ -13,7 +13,7 @@ from logs import written_ardupilot, written_dataflash, written_rig, written_ulog
 from logs.small_parts import small_parts
 from sensorfault.logs import Log, LogError, VehicleFile, guess, read
 from sensorfault.logs.parts import read_parts
-from sensorfault.logs.readers import dataflash_pieces
+from sensorfault.logs.readers import dataflash_load
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Tables
 from sensorfault.runtime.detect import detect
@@ -128,7 +128,7 @@ def test_what_units_are_is_said_once(tmp_path: Path) -> None:
 def test_a_message_across_the_edge_of_a_piece_behind_rubbish(tmp_path: Path, before: int) -> None:
     content = CONTENT[".bin"]
     at = content.index(b"\xa3\x95\x84", 4000)
-    path = put(tmp_path, ".bin", content[:at] + bytes(dataflash_pieces.PIECE_BYTES - at - before) + content[at:])
+    path = put(tmp_path, ".bin", content[:at] + bytes(dataflash_load.PIECE_BYTES - at - before) + content[at:])
     assert len(read_tables(path)["IMU"].frame) == 1000
 
 

@@ -35,7 +35,8 @@ def odd(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     asked.clear()
     other = Format("odd", ("*.odd",), lambda path, ask: {}, looks=lambda head: head.startswith(b"no"))
     ours = Format("two tables", ("*.odd", "*.odd.[0-9]"), two_tables)
-    monkeypatch.setattr(formats, "FORMATS", (*formats.FORMATS, other, ours))
+    every = (*formats.registered(), other, ours)
+    monkeypatch.setattr(formats, "registered", lambda: every)
     path = tmp_path / "log.odd"
     path.write_bytes(b"anything")
     return path

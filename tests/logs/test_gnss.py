@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from pyubx2 import UBXReader
 
-from fuzz import texts
-from fuzz.small import SMALL, _csv, nmea, ubx
+from fuzz.small import SMALL
+from fuzz.writing import EPOCHS
 from sensorfault.logs import Log, LogError, read
 from sensorfault.logs.readers.csv import read_csv
 from sensorfault.logs.readers.formats import read_source
@@ -35,7 +35,7 @@ def column(log: Log, path: str) -> np.ndarray:
 
 
 def test_ubx_says_what_pyubx2_says(tmp_path: Path) -> None:
-    path = ubx(tmp_path)
+    path = SMALL["u-blox"](tmp_path)
     with path.open("rb") as file:
         said = [message for _, message in UBXReader(file) if message.identity == "RXM-RAWX"]
     log = read(path)
@@ -55,7 +55,7 @@ def test_ubx_says_what_pyubx2_says(tmp_path: Path) -> None:
 
 
 def test_a_damaged_length_costs_one_message(tmp_path: Path) -> None:
-    path = ubx(tmp_path)
+    path = SMALL["u-blox"](tmp_path)
     content = bytearray(path.read_bytes())
     at = content.find(b"\xb5\x62\x02\x15", 1)
     content[at + 5] ^= 0x40  # sixteen thousand bytes longer
@@ -66,7 +66,7 @@ def test_a_damaged_length_costs_one_message(tmp_path: Path) -> None:
 
 
 def test_nmea_becomes_one_row_for_each_time(tmp_path: Path) -> None:
-    path = nmea(tmp_path)
+    path = SMALL["NMEA"](tmp_path)
     log = read(path)
     assert len(log) == 12
     assert log.epoch_s == pytest.approx(1756036800.0)  # 2025-08-24 12:00:00 UTC
@@ -84,19 +84,19 @@ def test_nmea_becomes_one_row_for_each_time(tmp_path: Path) -> None:
 def test_rinex_of_both_versions(tmp_path: Path, title: str) -> None:
     path = SMALL[title](tmp_path)
     log = read(path)
-    assert len(log) == texts.EPOCHS
+    assert len(log) == EPOCHS
     assert log.epoch_s == pytest.approx(1756036800.0 - 18)
     assert any("no navigation file" in note for note in log.notes)
     if "2" in title:
-        np.testing.assert_allclose(column(log, "R01.pseudorange_m"), 2e7 + 2 + np.arange(texts.EPOCHS))
+        np.testing.assert_allclose(column(log, "R01.pseudorange_m"), 2e7 + 2 + np.arange(EPOCHS))
         np.testing.assert_allclose(column(log, "G07.doppler_hz"), -10.5)
     else:
-        np.testing.assert_allclose(column(log, "G07.pseudorange_m"), 2.1e7 + np.arange(texts.EPOCHS))
+        np.testing.assert_allclose(column(log, "G07.pseudorange_m"), 2.1e7 + np.arange(EPOCHS))
         np.testing.assert_allclose(column(log, "E30.cn0_dbhz"), 38.0)
     lines = path.read_text().splitlines(keepends=True)
     path.write_text("".join(lines[:-1]))
     cut = read(path)
-    assert len(cut) == texts.EPOCHS - 1
+    assert len(cut) == EPOCHS - 1
     assert cut.damage == (f"{path.name}: the file breaks off at line {len(lines) - 1}; what came before was read.",)
 
 
@@ -141,7 +141,7 @@ def test_corrected_ranges_hold_the_distance_and_the_receivers_clock() -> None:
 
 def test_without_places_there_are_no_satellites(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no satellite of G has a corrected pseudorange"):
-        satellites(read(ubx(tmp_path)), "G")
+        satellites(read(SMALL["u-blox"](tmp_path)), "G")
 
 
 def test_a_foreign_ephemeris_is_left_out(tmp_path: Path) -> None:
@@ -174,7 +174,7 @@ def test_several_seen_at_once_are_columns_of_their_own(tmp_path: Path) -> None:
     assert [channel.path for channel in log.channels] == [
         f"barcode_{one}.{what}" for one in (14, 90) for what in ("range", "bearing")
     ]
-    np.testing.assert_allclose(column(log, "barcode_90.range"), 3 + 0.1 * np.arange(texts.EPOCHS))
+    np.testing.assert_allclose(column(log, "barcode_90.range"), 3 + 0.1 * np.arange(EPOCHS))
 
 
 def test_a_packed_file_is_read_up_to_its_damage(tmp_path: Path) -> None:
@@ -191,7 +191,9 @@ def test_a_packed_file_is_read_up_to_its_damage(tmp_path: Path) -> None:
     short = gzip.compress(("time,ax,ay\n" + rows[:30_000]).encode(), mtime=0)
     at = len(short) * 3 // 4
     path.write_bytes(short[:at] + b"\xff" * 50 + short[at + 50 :])
-    unpacked = read_unpacked(path, lambda file: {file.read_text(errors="replace"): read_csv(_csv(tmp_path))})
+    unpacked = read_unpacked(
+        path, lambda file: {file.read_text(errors="replace"): read_csv(SMALL["text table"](tmp_path))}
+    )
     (content,) = unpacked
     assert content[:15_000] == ("time,ax,ay\n" + rows)[:15_000]
     path.write_bytes(b"no gzip at all")

@@ -148,7 +148,7 @@ def test_what_cannot_be_read_in_parts_is_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="this is MATLAB, which is read whole"):
         read_parts(tmp_path / "log.mat", print)
     write(fitted.rig().between(end_s=2.0), path)
-    with pytest.raises(LogError, match=r"this is 2 files; .* one file of: text table, Parquet"):
+    with pytest.raises(LogError, match=r"this is 2 files; .* one file of: ArduPilot DataFlash, .*, text table"):
         read_parts(tmp_path, print)
     (tmp_path / "log.mat").unlink()
     lines = path.read_text().splitlines(keepends=True)

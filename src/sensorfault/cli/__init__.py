@@ -1,13 +1,28 @@
 """The command line: one verb a file. Nothing slow is imported before a verb runs."""
 
 import sys
+from collections import UserDict
+from importlib import import_module
 
 import click
 
-from sensorfault.cli import demo, detect, evaluate, fit, info, init, inject, methods, report, reproduce
+VERBS = ("demo", "detect", "evaluate", "fit", "info", "init", "inject", "methods", "report", "reproduce")
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+class _Verbs(UserDict[str, click.Command]):
+    """Name -> command. A verb is a module of this package with a `command`, imported when it is asked for."""
+
+    def __getitem__(self, name: str) -> click.Command:
+        if name not in self.data:
+            raise KeyError(name)
+        found: click.Command = import_module(f"{__name__}.{name}").command
+        return found
+
+
+@click.group(
+    commands=_Verbs(dict.fromkeys(VERBS)),  # type: ignore[arg-type]  # no command yet
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
 @click.version_option(package_name="sensorfault")
 def cli() -> None:
     """Notice when a vehicle's sensor lies, name it and the kind of fault.
@@ -16,10 +31,6 @@ def cli() -> None:
     LOG is a file (PX4 .ulg, ArduPilot .bin, .log or .tlog, ROS .bag, .db3 or .mcap, CSV, Parquet, MATLAB, NumPy, GNSS
     formats), or a folder of such files of one drive. `sensorfault info LOG` says what it holds.
     """
-
-
-for verb in (demo, init, info, fit, detect, inject, evaluate, report, methods, reproduce):
-    cli.add_command(verb.command)
 
 
 def main() -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sensorfault.cli import options, show, work
-from sensorfault.cli.commit import commit
 
 if TYPE_CHECKING:
     from sensorfault.cli.studies import Reproduction, Study
@@ -27,6 +26,8 @@ def command(name: str | None, seeds: int, quick: bool, out: Path | None, json_pa
     STUDY is the name of an installed study, or all; without it the studies are listed. Their real logs are found
     through SENSORFAULT_DATA.
     """
+    from sensorfault.cli.commit import commit
+
     if name is None:
         _list(json_path)
         return

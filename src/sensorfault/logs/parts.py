@@ -10,7 +10,8 @@ from sensorfault.logs.joining import Joining, Said
 from sensorfault.logs.place import called_after, files_of, find_vehicle, pair_files
 from sensorfault.logs.read import GUESSED
 from sensorfault.logs.readers.beginning import is_long
-from sensorfault.logs.readers.formats import FORMATS, format_of, known_format, read_tables
+from sensorfault.logs.readers.formats import format_of, known_format, read_tables
+from sensorfault.logs.readers.registry import registered
 from sensorfault.logs.readers.source import Ask
 from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
@@ -51,7 +52,7 @@ def read_parts(
     if file is None:
         files = files_of(path)
         what = f"{len(files)} files" if len(files) > 1 else f"{known_format(files[0]).title}, which is read whole"
-        able = ", ".join(one.title for one in FORMATS if one.parts)
+        able = ", ".join(sorted((one.title for one in registered() if one.parts), key=str.casefold))
         raise LogError(f"{path}: this is {what}; what can be read part by part is one file of: {able}.")
     described = find_vehicle(path, vehicle)
     known = called_after(described, path) if described else guess(path, tell)

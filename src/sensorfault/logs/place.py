@@ -5,7 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.readers.formats import SUFFIXES, format_of
+from sensorfault.logs.readers.formats import format_of
+from sensorfault.logs.readers.registry import suffixes
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
@@ -27,7 +28,7 @@ def files_of(path: Where) -> list[Path]:
         inside = ((file, format_of(file)) for file in Path(path).iterdir() if file.is_file())
         files = sorted({form.leader(file) for file, form in inside if form is not None})
         if not files:
-            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(SUFFIXES)} there.")
+            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(suffixes())} there.")
     else:
         files = [Path(path)]
     for file in files:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.logs.readers.decoded import Recording
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.ros_types import decoder
 from sensorfault.logs.readers.source import Ask, Damage, Tables
 from sensorfault.logs.readers.telling import TellingFile
@@ -92,3 +93,6 @@ def _connection(header: Any, data: bytes, recording: Recording) -> None:
     about = Header.read(BytesIO(len(data).to_bytes(4, "little") + data))
     topic, kind = header.get_string("topic"), about.get_string("type")
     recording.open(header.get_uint32("conn"), topic, kind, decoder(kind, about.get_string("message_definition"), ros=1))
+
+
+FORMAT = Format("ROS 1 bag", ("*.bag",), remembering(read_bag1), parts=True)

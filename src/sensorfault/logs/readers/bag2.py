@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.logs.readers.decoded import Recording
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.ros_types import decoder
 from sensorfault.logs.readers.source import Ask, Damage, Tables
 from sensorfault.logs.table import LogError
@@ -96,3 +97,6 @@ def _plain(raw: Any) -> bytes:
 
         return zstandard.decompress(raw)
     return bytes(raw)
+
+
+FORMAT = Format("ROS 2 bag", ("*.db3",), remembering(read_bag2), leader=first_part, parts=True)

@@ -9,6 +9,7 @@ from typing import Any
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.can_rows import Rows
 from sensorfault.logs.readers.extra import extra
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, with_notes
@@ -116,3 +117,6 @@ class _Decoding:
         if not self._spoilt:
             return []
         return [Damage(f"{counted(self._spoilt, 'frame')} cannot be decoded", "other places", "they were left out")]
+
+
+FORMAT = Format("CAN recording", ("*.blf", "*.asc"), remembering(read_can), parts=True)

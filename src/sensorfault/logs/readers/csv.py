@@ -8,8 +8,9 @@ from typing import Literal
 import polars as pl
 
 from sensorfault.logs.readers.dialect import MISSING, Dialect, is_number, sniff
+from sensorfault.logs.readers.format import Format, in_parts
 from sensorfault.logs.readers.source import Ask, Source
-from sensorfault.logs.readers.times_apart import times_beside, with_times
+from sensorfault.logs.readers.times_apart import table_timed, times_beside, with_times
 from sensorfault.logs.table import LogError
 
 _PADDING = ' \t\r"'
@@ -172,3 +173,8 @@ def _last_cut(path: Path, dialect: Dialect, frame: pl.DataFrame) -> bool:
     if tail.endswith(("\n", "\r")) or len(frame) < 2:
         return False
     return len(dialect.split(tail.splitlines()[-1])) < len(dialect.names)
+
+
+FORMAT = Format(
+    "text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), in_parts(read_csv, rest_of_csv), leader=table_timed, parts=True
+)

@@ -8,6 +8,7 @@ import polars as pl
 from numpy.lib.stride_tricks import sliding_window_view
 
 from sensorfault.logs.readers.covered import Covered
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, with_notes
@@ -15,7 +16,7 @@ from sensorfault.logs.table import LogError
 from sensorfault.logs.units import known, spelled
 
 if TYPE_CHECKING:
-    from sensorfault.logs.readers.dataflash_pieces import Piece
+    from sensorfault.logs.readers.dataflash_load import Piece
 
 HEAD = b"\xa3\x95"  # every message begins so
 CLOCKS = (("TimeUS", "us"), ("T", "ms"), ("TimeMS", "ms"))  # an older GPS message has the autopilot's time in T
@@ -38,7 +39,7 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
     if head != HEAD:
         what = "an empty file" if not head else "not a DataFlash log (it does not begin with A3 95)"
         raise LogError(f"{path}: this is {what}; name a .bin file as the autopilot wrote it.")
-    from sensorfault.logs.readers.dataflash_pieces import BadDescription, pieces_of  # lazily: for pymavlink
+    from sensorfault.logs.readers.dataflash_load import BadDescription, pieces_of  # lazily: for pymavlink
 
     handing, covered = Handing(ask), Covered()
     tables: Tables = {}
@@ -140,3 +141,6 @@ def _tail(path: Path, end: int) -> list[Damage]:
     if len(tail) < _PADDING and not tail.startswith(HEAD):
         return []
     return [Damage("the file ends in what is no whole message,", f"byte {end}")]
+
+
+FORMAT = Format("ArduPilot DataFlash", ("*.bin",), remembering(read_dataflash), parts=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import polars as pl
 
 from sensorfault.logs.readers.dataflash import CLOCKS, INSTANCE
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.source import PART, Ask, Damage, Source, Tables, with_notes
 from sensorfault.logs.readers.telling import TellingFile
@@ -116,3 +117,13 @@ def _by_instance(path: Path, kind: str, frame: pl.DataFrame, clock: tuple[str, s
         for (device,), of_it in devices.items()
         if device is not None
     }
+
+
+FORMAT = Format(
+    "ArduPilot DataFlash text",
+    ("*.log",),
+    remembering(read_dataflash_text),
+    looks_dataflash_text,
+    parts=True,
+    priority=1,
+)

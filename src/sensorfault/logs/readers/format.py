@@ -18,10 +18,11 @@ def _itself(path: Path) -> Path:
 class Format:
     """One kind of log file.
 
-    `names`: what its files are called, `*.csv`, in lower case. `read`: a file -> its tables, as far as it can be read.
-    `looks`: whether a file that begins so (4096 bytes) is one, where several formats call their files alike; the first
-    that says so takes it, else the first that has no `looks`. `leader`: of files that only together are one log, the
-    one that stands for them. `parts`: whether it hands on a long file part by part, if asked to.
+    `names`: patterns for the names of its files, in lower case, as `*.csv`. `read`: the tables of a file, as far as it
+    can be read. `looks`: whether a file that begins with these 4096 bytes is one; needed where several formats name
+    their files alike. `leader`: where several files are one log, the file that stands for them. `parts`: whether it can
+    hand on a long file part by part. `priority`: of formats that all recognise a beginning, or none of which does, the
+    highest is taken; formats that look and share a pattern must differ in it.
     """
 
     title: str
@@ -30,9 +31,10 @@ class Format:
     looks: Callable[[bytes], bool] | None = None
     leader: Callable[[Path], Path] = _itself
     parts: bool = False
+    priority: int = 0
 
     def may_be(self, path: Path) -> bool:
-        """Whether its files are called so."""
+        """Whether a file has a name of this format."""
         return any(fnmatchcase(inner(path).name.lower(), name) for name in self.names)
 
 

@@ -1,97 +1,30 @@
-"""Which reader opens which file. A new format is one more line in FORMATS."""
+"""Which reader opens which file. A reader registers its own format: see registry.py."""
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from sensorfault.logs.readers.attitude import with_attitude
-from sensorfault.logs.readers.bag1 import read_bag1
-from sensorfault.logs.readers.bag2 import first_part, read_bag2
-from sensorfault.logs.readers.can_bus import read_can
-from sensorfault.logs.readers.csv import read_csv, rest_of_csv
-from sensorfault.logs.readers.dataflash import read_dataflash
-from sensorfault.logs.readers.dataflash_text import looks_dataflash_text, read_dataflash_text
-from sensorfault.logs.readers.format import Format, in_parts, one_table, remembering
-from sensorfault.logs.readers.gnss.leader import observations_beside
-from sensorfault.logs.readers.gnss.librsf import looks_librsf, read_librsf
-from sensorfault.logs.readers.gnss.nmea import looks_nmea, read_nmea
-from sensorfault.logs.readers.gnss.rinex import looks_rinex
-from sensorfault.logs.readers.gnss.rinex_nav import read_places
-from sensorfault.logs.readers.gnss.rinex_obs import read_obs
-from sensorfault.logs.readers.gnss.smartloc import looks_smartloc, read_smartloc
-from sensorfault.logs.readers.gnss.sp3 import read_sp3
-from sensorfault.logs.readers.gnss.ubx import read_ubx
+from sensorfault.logs.readers.format import Format
 from sensorfault.logs.readers.gzipped import head_of, is_packed, read_unpacked
-from sensorfault.logs.readers.mat import read_mat
-from sensorfault.logs.readers.mavlink import read_tlog
-from sensorfault.logs.readers.mcap import read_mcap
-from sensorfault.logs.readers.mdf import looks_mdf, read_mdf
-from sensorfault.logs.readers.npy import called_by, read_npy
-from sensorfault.logs.readers.parquet import read_parquet, rest_of_parquet
-from sensorfault.logs.readers.rtklib import read_pos
+from sensorfault.logs.readers.registry import registered, suffixes
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
-from sensorfault.logs.readers.times_apart import table_timed
-from sensorfault.logs.readers.ulog import read_ulog
-from sensorfault.logs.readers.utias import looks_utias, read_utias
 from sensorfault.logs.table import LogError
 
 _HEAD_BYTES = 4096
 _ARCHIVES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip", ".7z", ".rar")
 
 
-FORMATS = (
-    Format(
-        "text table",
-        ("*.csv", "*.tsv", "*.txt", "*.dat"),
-        in_parts(read_csv, rest_of_csv),
-        leader=table_timed,
-        parts=True,
-    ),
-    Format("libRSF measurements", ("*.txt",), remembering(read_librsf), looks_librsf),
-    Format("smartLoc measurements", ("*.csv",), remembering(read_smartloc), looks_smartloc),
-    Format("UTIAS measurements", ("*.dat",), one_table(read_utias), looks_utias),
-    Format("Parquet", ("*.parquet",), in_parts(read_parquet, rest_of_parquet), parts=True),
-    Format("RTKLIB solution", ("*.pos",), one_table(read_pos)),
-    Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by),
-    Format("MATLAB", ("*.mat",), remembering(read_mat)),
-    Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog), parts=True),
-    Format("ROS 1 bag", ("*.bag",), remembering(read_bag1), parts=True),
-    Format("ROS 2 bag", ("*.db3",), remembering(read_bag2), leader=first_part, parts=True),
-    Format("MCAP", ("*.mcap",), remembering(read_mcap), leader=first_part, parts=True),
-    Format("ArduPilot DataFlash", ("*.bin",), remembering(read_dataflash), parts=True),
-    Format("ArduPilot DataFlash text", ("*.log",), remembering(read_dataflash_text), looks_dataflash_text, parts=True),
-    Format("MAVLink telemetry", ("*.tlog",), remembering(read_tlog), parts=True),
-    Format("MDF", ("*.mf4", "*.mdf", "*.dat"), remembering(read_mdf), looks_mdf, parts=True),
-    Format("CAN recording", ("*.blf", "*.asc"), remembering(read_can), parts=True),
-    Format("u-blox", ("*.ubx",), remembering(read_ubx)),
-    Format("NMEA", ("*.nmea", "*.txt", "*.log"), remembering(read_nmea), looks_nmea),
-    Format(
-        "RINEX observations",
-        ("*.obs", "*.rnx", "*.[0-9][0-9]o"),
-        remembering(one_table(read_obs)),
-        partial(looks_rinex, "O"),
-    ),
-    Format(
-        "RINEX navigation",
-        ("*.nav", "*.rnx", "*.[0-9][0-9][nglp]"),
-        remembering(one_table(read_places)),
-        partial(looks_rinex, "NG"),
-        observations_beside,
-    ),
-    Format("SP3 orbits", ("*.sp3",), remembering(one_table(read_sp3)), leader=observations_beside),
-)
-SUFFIXES = tuple(dict.fromkeys(name.removeprefix("*") for one in FORMATS for name in one.names))
-
-
 def format_of(path: Path) -> Format | None:
-    """The format of a file, by its name and, where that does not tell, its beginning.
+    """The format of a file, by its name and, where several formats share that, its beginning.
+
+    A format that recognises the beginning wins, then one that does not look at it; `Format.priority` decides a tie.
 
     Raises:
         OSError: the beginning is needed and cannot be read.
     """
-    named = [one for one in FORMATS if one.may_be(path)]
+    named = [one for one in registered() if one.may_be(path)]
     if len(named) < 2:
         return named[0] if named else None
     head = head_of(path, _HEAD_BYTES)
@@ -112,7 +45,7 @@ def known_format(path: Path) -> Format:
         raise LogError(
             f"{path}: this is an archive of several files; unpack it, and name a log in it or a drive's folder."
         )
-    raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {', '.join(SUFFIXES)}.")
+    raise LogError(f"{path}: nothing here reads '{path.suffix or path.name}'; give one of {', '.join(suffixes())}.")
 
 
 def read_source(path: Path, table: str | None = None) -> Source:

@@ -10,6 +10,7 @@ import polars as pl
 
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.extra import missing
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.mat_load import load
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
@@ -93,3 +94,6 @@ def _table(path: Path, vectors: dict[str, np.ndarray]) -> Source | None:
         f"{path.name}: {counted(len(others), 'vector')} of another length than {rows} left out: {', '.join(others)}.",
     )
     return Source(path, pl.DataFrame(columns), notes=said if others else ())
+
+
+FORMAT = Format("MATLAB", ("*.mat",), remembering(read_mat))

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.readers.telling import TellingFile
@@ -119,3 +120,6 @@ def _unit_of(kinds: dict[int, Any]) -> Callable[[str, str], str]:
         return found if known(found) else ""
 
     return unit
+
+
+FORMAT = Format("MAVLink telemetry", ("*.tlog",), remembering(read_tlog), parts=True)

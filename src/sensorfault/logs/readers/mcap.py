@@ -4,8 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sensorfault.logs.readers.bag2 import parts_of
+from sensorfault.logs.readers.bag2 import first_part, parts_of
 from sensorfault.logs.readers.decoded import Recording
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.mcap_records import MAGIC, records
 from sensorfault.logs.readers.protobuf import protobuf_decoder
 from sensorfault.logs.readers.ros_types import Decoder, decoder
@@ -64,3 +65,6 @@ def _decoder(encoding: str, schema: Any) -> Decoder | None:
     if encoding == "protobuf" and schema is not None:
         return protobuf_decoder(schema.name, schema.data)
     return None
+
+
+FORMAT = Format("MCAP", ("*.mcap",), remembering(read_mcap), leader=first_part, parts=True)

@@ -7,6 +7,7 @@ import polars as pl
 
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.extra import missing
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.mdf_load import TIME
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
@@ -70,3 +71,6 @@ def _tables(path: Path, ask: Ask, loaded: Loaded) -> Tables:
 def looks_mdf(head: bytes) -> bool:
     """Whether a file that begins so is one."""
     return head.startswith((b"MDF ", b"UnFinMF "))
+
+
+FORMAT = Format("MDF", ("*.mf4", "*.mdf", "*.dat"), remembering(read_mdf), looks_mdf, parts=True)

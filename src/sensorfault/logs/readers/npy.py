@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from sensorfault.logs.readers.format import Format, one_table
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.npy_columns import columns_of
 from sensorfault.logs.readers.source import Source
@@ -102,3 +103,6 @@ def _array(path: Path) -> np.ndarray:
     if array.dtype.kind not in _NUMBERS or not array.ndim or not array.size:
         raise LogError(f"{path}: no table of numbers; save one with numpy.save: rows, or rows and columns.")
     return array
+
+
+FORMAT = Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by)

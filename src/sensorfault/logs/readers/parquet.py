@@ -6,6 +6,7 @@ from pathlib import Path
 
 import polars as pl
 
+from sensorfault.logs.readers.format import Format, in_parts
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import PART, Ask, Source
 from sensorfault.logs.table import LogError
@@ -60,3 +61,6 @@ def _source(path: Path, frame: pl.DataFrame) -> Source:
     if len(flat) < frame.width:
         notes.append(f"{path.name}: {frame.width - len(flat)} columns hold lists or structures and were left out.")
     return Source(path, frame.select(flat), notes=tuple(notes))
+
+
+FORMAT = Format("Parquet", ("*.parquet",), in_parts(read_parquet, rest_of_parquet), parts=True)

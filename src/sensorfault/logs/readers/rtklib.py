@@ -8,6 +8,7 @@ import numpy as np
 import polars as pl
 from jaxtyping import Float
 
+from sensorfault.logs.readers.format import Format, one_table
 from sensorfault.logs.readers.gps_time import WEEK_S, unix_from_gps_calendar, unix_from_gps_week
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
@@ -110,3 +111,6 @@ def read_tag(path: Path, stream: Path, counter_s: np.ndarray, line: np.ndarray) 
     rate, offset = np.polyfit(counter - counter[0], arrival, 1)
     start = unix_from_gps_calendar(second + fraction)
     return start + float(offset - rate * counter[0]), float(rate)
+
+
+FORMAT = Format("RTKLIB solution", ("*.pos",), one_table(read_pos))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import polars as pl
 
 from sensorfault.logs.phrase import times
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.handing import Handing
 from sensorfault.logs.readers.native import native_fields
 from sensorfault.logs.readers.quiet import quiet
@@ -101,3 +102,6 @@ def _table(path: Path, topic: Any) -> Source:
     columns = native_fields(fields)
     frame = pl.DataFrame({name: pl.Series(name, column, nan_to_null=False) for name, column in columns.items()})
     return Source(path, frame, _TIME, "us")
+
+
+FORMAT = Format("PX4 ULog", ("*.ulg", "*.ulog"), remembering(read_ulog), parts=True)

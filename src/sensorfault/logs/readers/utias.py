@@ -10,6 +10,7 @@ import polars as pl
 
 from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.readers.csv import read_csv
+from sensorfault.logs.readers.format import Format, one_table
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
@@ -52,3 +53,6 @@ def read_utias(path: Path) -> Source:
 def looks_utias(head: bytes) -> bool:
     """Whether a file that begins so is one."""
     return head.startswith(b"# UTIAS Multi-Robot") and b"Measurement Data" in head
+
+
+FORMAT = Format("UTIAS measurements", ("*.dat",), one_table(read_utias), looks_utias, priority=1)

@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.entries import ChannelEntry, SensorEntry
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.gnss.observed import TIME, observed
 from sensorfault.logs.readers.gnss.rinex import lines_of
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, with_notes
@@ -106,3 +107,6 @@ def _name(satellite: int, system: int) -> str:
 def looks_librsf(head: bytes) -> bool:
     """Whether a file that begins so is one."""
     return (head.split(maxsplit=1) or [b""])[0].decode("ascii", "replace") in _WORDS
+
+
+FORMAT = Format("libRSF measurements", ("*.txt",), remembering(read_librsf), looks_librsf, priority=1)

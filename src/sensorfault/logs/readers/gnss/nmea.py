@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.gnss.fixes import gnss_table
 from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.table import LogError
@@ -83,3 +84,6 @@ def looks_nmea(head: bytes) -> bool:
     """Whether a file that begins so is one: its first whole lines are sentences."""
     lines = head.splitlines()[:-1]
     return any(re.match(rb"\$[A-Z]{5},", line) for line in lines[:10])
+
+
+FORMAT = Format("NMEA", ("*.nmea", "*.txt", "*.log"), remembering(read_nmea), looks_nmea)

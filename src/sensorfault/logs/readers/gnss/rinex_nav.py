@@ -6,14 +6,17 @@ Source: RINEX 2.11 (Gurtner, 2007), tables A3, A4, A10; RINEX 3.04 (IGS/RTCM, 20
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from sensorfault.logs.readers.format import Format, one_table, remembering
 from sensorfault.logs.readers.gnss.beidou import LATE_S, tilt
 from sensorfault.logs.readers.gnss.broadcast import Broadcast, gathered
+from sensorfault.logs.readers.gnss.leader import observations_beside
 from sensorfault.logs.readers.gnss.observed import Observed
-from sensorfault.logs.readers.gnss.rinex import Header, calendar_s, lines_of, read_header
+from sensorfault.logs.readers.gnss.rinex import Header, calendar_s, lines_of, looks_rinex, read_header
 from sensorfault.logs.readers.gps_time import GPS_EPOCH_S, leap_seconds
 from sensorfault.logs.readers.source import Damage, Source
 from sensorfault.logs.table import LogError
@@ -153,3 +156,12 @@ def _state(epoch: float, fields: list[float]) -> GlonassEphemeris:
         speed=[1e3 * fields[i] for i in (4, 8, 12)],
         pull=[1e3 * fields[i] for i in (5, 9, 13)],
     )
+
+
+FORMAT = Format(
+    "RINEX navigation",
+    ("*.nav", "*.rnx", "*.[0-9][0-9][nglp]"),
+    remembering(one_table(read_places)),
+    partial(looks_rinex, "NG"),
+    observations_beside,
+)

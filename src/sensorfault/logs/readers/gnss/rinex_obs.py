@@ -7,13 +7,15 @@ Source: RINEX 2.11 (Gurtner, 2007), table A2; RINEX 3.04 (IGS/RTCM, 2018), table
 
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from sensorfault.logs.readers.format import Format, one_table, remembering
 from sensorfault.logs.readers.gnss.beside import broadcast_beside
 from sensorfault.logs.readers.gnss.observed import Observed, observed
 from sensorfault.logs.readers.gnss.ranges import with_satellites
-from sensorfault.logs.readers.gnss.rinex import Header, calendar_s, lines_of, read_header
+from sensorfault.logs.readers.gnss.rinex import Header, calendar_s, lines_of, looks_rinex, read_header
 from sensorfault.logs.readers.gps_time import GPS_EPOCH_S
 from sensorfault.logs.readers.source import Damage, Source
 from sensorfault.logs.table import LogError
@@ -165,3 +167,12 @@ def _epochs_2(lines: list[str], header: Header, damage: list[Damage]) -> Iterato
         named = [(("G" if name[0] == " " else name[0]) + name[1:].replace(" ", "0")) for name in names]
         yield _Epoch(time, at + 1, list(zip(named, body, strict=False)))
         at = end
+
+
+FORMAT = Format(
+    "RINEX observations",
+    ("*.obs", "*.rnx", "*.[0-9][0-9]o"),
+    remembering(one_table(read_obs)),
+    partial(looks_rinex, "O"),
+    priority=1,
+)

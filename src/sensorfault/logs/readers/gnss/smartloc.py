@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.readers.csv import read_csv
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.gnss.fixes import gnss_table
 from sensorfault.logs.readers.gnss.observed import name_of, observed
 from sensorfault.logs.readers.gps_time import unix_from_gps_week
@@ -77,3 +78,6 @@ def _column(source: Source, mark: str) -> np.ndarray:
 def looks_smartloc(head: bytes) -> bool:
     """Whether a file that begins so is one."""
     return head.startswith(b"GPSWeek [weeks];") and b"(prMes)" in head
+
+
+FORMAT = Format("smartLoc measurements", ("*.csv",), remembering(read_smartloc), looks_smartloc)

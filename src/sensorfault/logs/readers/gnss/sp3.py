@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from sensorfault.logs.readers.format import Format, one_table, remembering
+from sensorfault.logs.readers.gnss.leader import observations_beside
 from sensorfault.logs.readers.gnss.observed import Observed
 from sensorfault.logs.readers.gnss.rinex import calendar_s, lines_of
 from sensorfault.logs.readers.gps_time import GPS_EPOCH_S
@@ -81,3 +83,6 @@ def read_orbits(path: Path) -> Orbits:
 def looks_sp3(head: bytes) -> bool:
     """Whether a file that begins so is one."""
     return head[:2] in (b"#a", b"#b", b"#c", b"#d") and head[2:3] in (b"P", b"V")
+
+
+FORMAT = Format("SP3 orbits", ("*.sp3",), remembering(one_table(read_sp3)), leader=observations_beside)

@@ -8,6 +8,7 @@ Source: u-blox F9 HPG 1.32 interface description (UBX-22008968): 3.2 frame, RXM-
 
 from pathlib import Path
 
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.gnss.beside import NONE
 from sensorfault.logs.readers.gnss.fixes import fixes
 from sensorfault.logs.readers.gnss.frames import frames
@@ -51,3 +52,6 @@ def read_ubx(path: Path, ask: Ask) -> Tables:
     if not tables and not (raw or solutions):
         raise LogError(f"{path}: no raw measurement (RXM-RAWX) and no fix (NAV-PVT) in it that can be read; log them.")
     return with_notes(tables, (), lost)
+
+
+FORMAT = Format("u-blox", ("*.ubx",), remembering(read_ubx))
