@@ -151,7 +151,7 @@ def test_the_catalog(run: Run) -> None:
     assert said.err == ""
     result = json.loads(said.out)["methods"]
     assert [method["name"] for method in result] == list(METHODS)
-    assert all(set(method) == {"name", "title", "source", "promise"} for method in result)
+    assert all(set(method) == {"name", "title", "source", "false_alarm_rate"} for method in result)
     table = run("methods")
     assert "elm-autoencoder" in table.out
     assert "Min et al. 2021" in table.out

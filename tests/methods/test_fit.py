@@ -55,7 +55,7 @@ def test_the_catalog() -> None:
         assert recipe.name == name
         assert recipe.title
         assert recipe.source
-        assert recipe.promise
+        assert recipe.false_alarm_rate
 
 
 def test_limits_are_frozen_on_other_data_than_they_are_judged_on() -> None:
@@ -125,7 +125,7 @@ def test_progress_is_told_in_words() -> None:
     fit(log(), progress=result.append)
     assert len(result) == 3
     assert DEFAULT in result[0]
-    assert "held out" in result[-1]
+    assert "held-out" in result[-1]
 
 
 def sentence(log: Log, **how: object) -> str:

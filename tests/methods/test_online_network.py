@@ -67,7 +67,7 @@ def test_against_what_it_has_lately_been_a_shaking_arm_is_no_fault() -> None:
     shaken = log().value.copy()
     rows = (log().time >= 44.0) & (log().time < 54.0)
     shaken[np.ix_(rows, range(4))] += 0.015 * np.random.default_rng(0).standard_normal((rows.sum(), 4))
-    follows = build(log().between(end_s=HEALTHY_S), 0, SILENT, Setting(LEARNING, lately=20))
+    follows = build(log().between(end_s=HEALTHY_S), 0, SILENT, Setting(LEARNING, rms_ticks=20))
     assert follows.tests[0] == ("absolute, relative", "tachometer1.rate")
     later = log().time[rows] >= 47.0
     alarms = [
@@ -78,7 +78,7 @@ def test_against_what_it_has_lately_been_a_shaking_arm_is_no_fault() -> None:
     lied = detect(follows, shifted("encoder1.angle", 44.0, 0.3))
     assert next((event.sensor, event.start_s) for event in lied.events) == ("encoder1", pytest.approx(44.0))
     with pytest.raises(ValueError, match="in units of"):
-        Setting(slope=True, lately=20)
+        Setting(slope=True, rms_ticks=20)
 
 
 def test_from_scratch_it_is_unknown_until_it_has_learned() -> None:

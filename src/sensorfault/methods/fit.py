@@ -1,4 +1,4 @@
-"""Healthy data in, fitted model out, with what the model does on healthy data it has not seen."""
+"""Fit a model on healthy data, and count its false alarms on the part of the data that was held out."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -25,32 +25,33 @@ def fit(
 ) -> Model:
     """Fit a method of the catalog on a healthy log.
 
-    The last `held_out` share of the log (0 to 0.9) is kept from the fit and judged afterwards: `model.summary` then has
-    `held_out_s`, `held_out_alarms`, `alarms_per_hour` and, with 95 % confidence, `alarms_per_hour_below`. With 0 all is
-    used and nothing is known of the rate. What plainly looks faulty in the part to fit on is left out and named in
-    `training_suspects`, a list of start_s, end_s, channel and reason.
+    The last share `held_out` of the log (0 to 0.9) is not used for the fit; the model is tested on it afterwards, and
+    `model.summary` has `held_out_s`, `held_out_alarms`, `alarms_per_hour` and its upper 95 % bound,
+    `alarms_per_hour_below`. With `held_out` 0 the whole log is used and the rate is not measured. Stretches of the
+    training part that clearly look faulty are removed and listed in `training_suspects` (start_s, end_s, channel,
+    reason).
 
-    `progress` is told what is being done. `checkpoint`: a file that a training by epochs writes after each, and goes on
-    from if it is there.
+    `progress` is called with a few words on the current step. `checkpoint`: a file saved after every epoch of a
+    training; resumed if present.
 
     Raises:
-        LogError: an unknown method, a log that it cannot be fitted on, or a checkpoint of another fit.
+        LogError: the method is unknown, cannot be fitted on this log, or the checkpoint is of another fit.
     """
     if not 0 <= held_out <= 0.9:
-        raise LogError(f"held_out is {held_out:g}; give the share of the log to keep for judging, 0 to 0.9.")
+        raise LogError(f"held_out is {held_out:g}; give the share of the log to hold out for testing, 0 to 0.9.")
     if len(log) < 2:
         raise LogError(f"{log.name} has {len(log)} rows; give a log of at least a few seconds.")
     session = Session(progress, checkpoint) if progress else Session(checkpoint=checkpoint)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s
-    session.tell(f"fitting {method}")
+    session.progress(f"fitting {method}")
     unseen = log.between(cut)
     if held_out and len(unseen) < 2:
-        raise LogError(f"held_out is {held_out:g}, which keeps no two rows of {log.name} to judge; give more, or 0.")
+        raise LogError(f"held_out is {held_out:g}, which leaves fewer than two rows of {log.name}; give more, or 0.")
     training, suspects = leave_out(log.between(end_s=cut) if held_out else log)
     model = recipe(method).build(training, seed, session)
     summary = model.summary | {"seed": seed, "training_suspects": [suspect.as_dict() for suspect in suspects]}
     if held_out:
-        session.tell("judging the part held out")
+        session.progress("testing on the held-out part")
         alarms = len(detect(model, unseen).events)
         hours = unseen.duration_s / 3600
         summary |= {"held_out_s": unseen.duration_s, "held_out_alarms": alarms, "alarms_per_hour": alarms / hours}

@@ -1,4 +1,4 @@
-"""A recipe: a paper's parts by name, and how they are fitted on healthy data."""
+"""A recipe: the parts of one method, its source, and how the parts are fitted on healthy data."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,21 +12,21 @@ from sensorfault.training.session import Session
 class Recipe:
     """`build(log, seed, session)` fits every part on a healthy log.
 
-    `promise` states the designed false-alarm rate in words, or that there is none. `needs(log)` raises LogError where
-    the log lacks what the method takes, as far as that shows without fitting; None: only the fit can tell. `parts`:
-    recipes that this one is made of; it runs if one of them does.
+    `false_alarm_rate` states in words the rate the limits are designed for, or that there is none. `needs(log)` raises
+    LogError where the log lacks a required channel, as far as this shows without fitting; None: only the fit shows it.
+    `parts`: the recipes that a composite consists of; it runs if at least one of them does.
     """
 
     name: str
     title: str
     source: str
-    promise: str
+    false_alarm_rate: str
     build: Callable[[Log, int, Session], Model]
     needs: Callable[[Log], object] | None = None
     parts: tuple["Recipe", ...] = ()
 
     def lacks(self, log: Log) -> str:
-        """What keeps the method from running on the log, as far as that shows without fitting; else empty."""
+        """Why the method cannot run on the log, as far as this shows without fitting; empty if it can."""
         if self.parts:
             reasons = self.lacking_parts(log)
             return " ".join(reasons.values()) if len(reasons) == len(self.parts) else ""

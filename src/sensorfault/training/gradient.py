@@ -79,7 +79,7 @@ def train(net: Net, windows: Windows, plan: Plan, seed: int, session: Session = 
             best, now = epoch, now._replace(best=now.net)
         elif (epoch - best) % max(plan.patience // 2, 1) == 0:
             now = now._replace(rate=now.rate * plan.slower)
-        session.tell(f"epoch {epoch} of at most {plan.epochs}, validation error {np.sqrt(validated[-1]):.3g}")
+        session.progress(f"epoch {epoch} of at most {plan.epochs}, validation error {np.sqrt(validated[-1]):.3g}")
         saved.write(now, learned, validated)
     found = jax.tree.map(lambda x: jnp.asarray(x, float), now.best)
     return Trained(found, best, tuple(learned), tuple(validated))

@@ -82,7 +82,7 @@ def learner(
     return replace(new, network=found.net)
 
 
-def untaught(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: int) -> OnlineNetwork:
+def untrained(residual: OnlineNetwork, limit: Float[np.ndarray, " C"], warm: int, seed: int) -> OnlineNetwork:
     """The same knowing nothing, and unsure before `warm` samples in a row have been foretold within their limits."""
     (inner,), outputs = residual.network.hidden, list(residual.columns)
     hidden, inputs = inner.weights.shape

@@ -11,11 +11,11 @@ def _silent(_: str) -> None:
 
 @dataclass(frozen=True)
 class Session:
-    """`tell` is given what is being done, in a few words. `checkpoint`: written while a network is trained by epochs,
-    and gone on from if it is there; a method that is fitted in one stroke writes none.
+    """`progress` is called with a few words on the current step. `checkpoint`: written while a network is trained by
+    epochs, and gone on from if it is there; a method that is fitted in one stroke writes none.
     """
 
-    tell: Callable[[str], None] = _silent
+    progress: Callable[[str], None] = _silent
     checkpoint: Path | None = None
 
 

@@ -159,7 +159,8 @@ def _real(arm: Joints) -> tuple[str, ...]:
         "are foretold without angles and angles without rates: they were smoothed offline from each other.",
         f"B, schunk: right isolation among twelve sensors at five one-step errors, with {far[SHOWN]:.1%} of healthy "
         f"samples with anybody over his limit: {each(SHOWN)}; with {far[HARDER]:.2%}: {each(HARDER)}. Residuals are "
-        f"judged by their own root mean square over {DEEP.lately} samples, since some parts of the motion are harder "
+        f"judged by their own root mean square over {DEEP.rms_ticks} samples, since some parts of the motion are "
+        "harder "
         f"to foretell than others; by fixed limits, as printed ('{FIXED}'): {each(f'{SHOWN} {FIXED}')}; "
         f"{each(f'{HARDER} {FIXED}')}. One in a hundred samples is far too often for a product. As it runs, with the "
         f"accused left out, {far[f'{SHOWN} as-run']:.2%} and {far[f'{HARDER} as-run']:.2%} of healthy samples have "

@@ -24,7 +24,7 @@ VARIANTS = {  # of the network, by what a row's condition calls it
     SCRATCH: Learning(scratch=True),
     AS_PRINTED: Learning(scratch=True, rate=0.3, iterations=10, absolute=True),  # each sample to convergence
 }
-DEEP = Taught(Learning(hidden=10, delays=(3, 1)), lately=20, horizon=1)  # for six joints
+DEEP = Taught(Learning(hidden=10, delays=(3, 1)), rms_ticks=20, horizon=1)  # for six joints
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def of_two_links(arm: Constants, theta: Mapping[str, float]) -> tuple[Rival, ...
 
 def of_six_joints(groups: tuple[tuple[str, ...], ...]) -> tuple[Rival, ...]:
     """On the real arm, of which there is no model; `groups`: paths that are foretold apart from the others."""
-    settings = {"": DEEP, FIXED: replace(DEEP, lately=0)}
+    settings = {"": DEEP, FIXED: replace(DEEP, rms_ticks=0)}
     networks = (
         Rival(NETWORK, variant, partial(_network, setting=replace(setting, groups=groups)))
         for variant, setting in settings.items()

@@ -1,4 +1,4 @@
-"""Do both joints of an arm move as its torques say: a Kalman filter on the paper's arm, each innovation by itself."""
+"""Do the joints of an arm move as its torques require? A Kalman filter on the arm of Niu & Zhao 1998."""
 
 from functools import partial
 from statistics import NormalDist
@@ -23,18 +23,18 @@ from sensorfault.training.online import noise
 from sensorfault.training.session import Session
 from sensorfault.vehicles.arm import Joints, TwoLink, joints
 
-FALSE_ALARMS = 1e-4  # allowed to one sensor at one sample
-FORGETTING = 1e-3  # variance that the state gains from one sample to the next, as a share of the sensor's
-GAP = 5.5  # ticks without anything to take in after which the filter begins anew
+FALSE_ALARMS = 1e-4  # probability for one sensor at one sample
+FORGETTING = 1e-3  # process noise of one sample, as a share of the sensor's variance
+GAP = 5.5  # the filter restarts after so many ticks without a measurement
 LEAST_ROWS = 20
-ODD = 4.0  # mean square of a sensor's healthy whitened innovations that shows another arm
+WRONG_ARM = 4.0  # a larger mean square of a sensor's whitened healthy innovations shows that it is another arm
 
 
 def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: float = FALSE_ALARMS) -> Model:
-    """Fit the noise of the sensors of a two-joint arm on a healthy log; `arm` is known. `far`: of a sensor's sample.
+    """Fit the sensor noise of a two-joint arm on a healthy log; `arm` is known. `far`: false alarm rate of one test.
 
     Raises:
-        LogError: other joints than two, too few rows, or an arm that does not move as `arm` does.
+        LogError: not exactly two joints, too few rows, or an arm that does not move as `arm` does.
     """
     found, watched, rows = _two_joints(name, log)
     outputs, channels = (*found.rates, *found.angles), len(log.channels)
@@ -57,7 +57,7 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
         owner=owners(log.channels, log.sensors),
     )
     sigma = _sigma(name, log, monitor, watched)
-    result = {
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "rows": int(rows.sum()),
@@ -65,38 +65,42 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
         "not_watched": {c.path: "not measured" for i, c in enumerate(log.channels) if i not in outputs},
     }
     tests = tuple(("innovation", log.channels[c].path) for c in outputs)
-    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, result)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, summary)
 
 
 def _two_joints(name: str, log: Log) -> tuple[Joints, Bool[np.ndarray, " C"], Bool[np.ndarray, " T"]]:
-    """The joints, the columns watched and the rows that have all of them.
+    """The joints, the watched columns, and the rows that have all of them.
 
     Raises:
-        LogError: other joints than two, or too few rows.
+        LogError: not exactly two joints, or too few rows.
     """
     found = joints(log)
     for what, columns in (("rate", found.rates), ("angle", found.angles), ("torque", found.torques)):
         if len(columns) != 2:
             raise LogError(
-                f"{log.name} has {len(columns)} channels called {what} in SI's unit, {name} needs one for each of two "
-                "joints; name the columns in vehicle.toml, or take another method."
+                f"{log.name} has {len(columns)} channels called {what} in SI units, but {name} needs one for each of "
+                "two joints; name the columns in vehicle.toml, or take another method."
             )
     watched = np.isin(np.arange(len(log.channels)), (*found.rates, *found.angles))
     rows = complete(log, watched)
     if rows.sum() < LEAST_ROWS:
         raise LogError(
-            f"{log.name} has {rows.sum()} rows with every rate and angle, {name} needs {LEAST_ROWS}; give more."
+            f"{log.name} has {rows.sum()} rows with every rate and angle, but {name} needs {LEAST_ROWS}; give more."
         )
     return found, watched, rows
 
 
 def _sigma(name: str, log: Log, monitor: Monitor, watched: Bool[np.ndarray, " C"]) -> tuple[float, ...]:
-    """Standard deviation of each channel's innovation, 1 where there is none; the log must be of this arm."""
+    """Standard deviation of each channel's innovation, 1 where there is none.
+
+    Raises:
+        LogError: the log is not of this arm.
+    """
     tape = replay_log(monitor, log)
     score: Float[np.ndarray, "T K"] = np.asarray(tape.scores[0])
-    if not np.isfinite(score).any() or np.nanmean(score**2, axis=0).max() > ODD:
+    if not np.isfinite(score).any() or np.nanmean(score**2, axis=0).max() > WRONG_ARM:
         raise LogError(
-            f"{log.name} is not of the arm that {name} knows, or not healthy: its innovations are far larger than the "
+            f"{log.name} is not of the arm of {name}, or not healthy: its innovations are far larger than the "
             "noise of its sensors; take another method."
         )
     residual = np.where(tape.valid, tape.residual, np.nan)[:, watched]
@@ -111,10 +115,10 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="arm-kalman",
-    title="Extended Kalman filter on the two-joint arm of Niu & Zhao 1998, innovation of each sensor by itself",
-    source="the analytical redundancy that Niu & Zhao 1998, section 1, set their network against",
-    promise="one false alarm in 10,000 samples of each sensor, if the arm and its noise are what the filter takes them "
-    "for",
+    title="Extended Kalman filter on the two-joint arm of Niu & Zhao 1998; one innovation test for each sensor",
+    source="the analytical redundancy that Niu & Zhao 1998, section 1, compare their network with",
+    false_alarm_rate="one false alarm in 10,000 samples of each sensor, if the filter's model of arm and noise is "
+    "right",
     build=_build,
     needs=partial(_two_joints, "arm-kalman"),
 )

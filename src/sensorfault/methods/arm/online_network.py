@@ -1,4 +1,4 @@
-"""Paper B: a network that foretells every sensor of an arm one sample ahead, and learns while it watches."""
+"""The method of Niu & Zhao 1998: a network predicts every sensor of an arm one sample ahead and learns online."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -17,27 +17,27 @@ from sensorfault.stages.residual.several import Several
 from sensorfault.stages.statistic.relative import Relative
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.stages.threshold.sigma import Sigma
-from sensorfault.training.online import Learning, learner, noise, steps, untaught
+from sensorfault.training.online import Learning, learner, noise, steps, untrained
 from sensorfault.training.session import Session
 
 NAME = "online-network"
-OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
-ROUGHEST = 8.0  # times the healthy root mean square: worse is no motion that is hard to foretell
-TAUGHT = 0.7  # of the healthy log; the limits come from the rest
+OFTEN = 0.9  # share of the ticks with a value; a channel that is often late breaks the runs of consecutive rows
+ROUGHEST = 8.0  # times the healthy RMS; a residual above this is never explained by a motion that is hard to predict
+TRAINING_SHARE = 0.7  # of the healthy log; the limits come from the rest
 
 
 @dataclass(frozen=True)
 class Setting:
-    """How the networks are taught, and how they judge.
+    """How the networks are trained, and how their residuals are tested.
 
-    `groups`: paths of the outputs of each network where there are several, each blind to what the others foretell.
-    Limits are Δ + 3σ: with `slope`, as printed, Δ is the largest step of the healthy output from one tick to the next,
-    else the tail of its healthy residual decides. `theta`: the whole limit of some paths [SI], whatever their Δ. A
-    stand-in is believed for `horizon` ticks, then the channel is unknown until it has been measured anew.
+    `groups`: output paths of each network where there are several; no network gets the outputs of another as inputs.
+    Limits are Δ + 3σ: with `slope`, as in the paper, Δ is the largest healthy change of the output from one tick to the
+    next, else it comes from the tail of the healthy residual. `theta`: the whole limit of some paths [SI], whatever
+    their Δ. A stand-in is used for `horizon` ticks; then the channel is unknown until it is measured again.
 
-    With `lately` a residual is judged by its own root mean square over about so many healthy ticks, never taken for
-    less than that of the healthy log, and limits are in its units: a motion that is hard to foretell is no fault, and
-    an easy one hides none. Slope and theta, which are in those of the sensor, do not go with it.
+    With `rms_ticks` a residual is divided by its own RMS over about so many healthy ticks, but at least by its RMS on
+    the healthy log: a motion that is hard to predict then raises no alarm, and an easy one hides no fault. Limits are
+    in these units, so `slope` and `theta`, which are in the units of the sensor, cannot be combined with it.
     """
 
     learning: Learning = field(default_factory=Learning)
@@ -45,53 +45,55 @@ class Setting:
     slope: bool = False
     theta: Mapping[str, float] = field(default_factory=dict)
     horizon: int = per_channel.HORIZON
-    lately: int = 0
+    rms_ticks: int = 0
 
     def __post_init__(self) -> None:
-        if self.lately and (self.slope or self.theta):
-            raise ValueError("limits in units of the lately seen residual cannot be given in those of the sensor.")
+        if self.rms_ticks and (self.slope or self.theta):
+            raise ValueError(
+                "rms_ticks gives limits in units of the residual's RMS; give neither slope nor theta with it."
+            )
 
 
 def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
-    """Fit on a healthy log: every watched channel that comes with the clock is foretold from all of them, and from
-    those marked watch = false that do so too (torques, commands) as the inputs.
+    """Fit on a healthy log: predicts every watched channel sampled at the log's rate, from all of them and from the
+    channels marked watch = false that are sampled at that rate too (torques, commands).
 
     Raises:
-        LogError: too few complete rows, or nothing to watch.
+        LogError: too few complete rows, or no channel to watch.
     """
     training = Training.of(NAME, log, OFTEN)
     driven, groups = _driven(log), _groups(training, setting)
-    cut = log.time[0] + TAUGHT * log.duration_s
+    cut = log.time[0] + TRAINING_SHARE * log.duration_s
     networks = []
     for g, columns in enumerate(groups):
-        session.tell(f"teaching network {g + 1} of {len(groups)}")
+        session.progress(f"training network {g + 1} of {len(groups)}")
         own = replace(session, checkpoint=None)  # one file cannot hold several trainings
         networks.append(learner(log.between(end_s=cut), columns, driven, setting.learning, seed, own))
-    session.tell("measuring what they leave")
+    session.progress("measuring the residuals")
     rest = log.between(cut)
     limit, spread = per_channel.healthy(rest, _side_by_side(networks, log))
     sigma = _threshold(training, limit, setting)
     threshold: Fixed | Sigma = sigma
     statistic = per_channel.SIZE
-    if setting.lately:
-        statistic = _relative(setting.lately, spread)
+    if setting.rms_ticks:
+        statistic = _relative(setting.rms_ticks, spread)
         limit, _ = per_channel.healthy(rest, _side_by_side(networks, log), statistic)
         threshold = Fixed(jnp.asarray(limit))
     networks = [replace(one, cov=jnp.diag(jnp.asarray(spread**2))) for one in networks]
     if setting.learning.scratch:
-        networks = [untaught(one, np.asarray(sigma.limit()), setting.learning.warm, seed) for one in networks]
-    result = {
+        networks = [untrained(one, np.asarray(sigma.limit()), setting.learning.warm, seed) for one in networks]
+    summary = {
         "rows": int(training.rows.sum()),
         "not_watched": training.reasons,
         "inputs": [log.channels[i].path for i in driven],
     }
     return per_channel.model(
-        NAME, log, _side_by_side(networks, log), threshold, spread, result, setting.horizon, statistic
+        NAME, log, _side_by_side(networks, log), threshold, spread, summary, setting.horizon, statistic
     )
 
 
 def _driven(log: Log) -> tuple[int, ...]:
-    """Columns of what drives the arm: not to be judged, there with nearly every tick, and moving."""
+    """Columns of the inputs (torques, commands): marked watch = false, changing, with values in nearly every tick."""
     there = log.fresh & np.isfinite(log.value)
     return tuple(
         i
@@ -104,7 +106,7 @@ def _groups(training: Training, setting: Setting) -> list[tuple[int, ...]]:
     """Columns of the outputs of each network.
 
     Raises:
-        LogError: one that cannot be foretold.
+        LogError: one of the paths in `groups` cannot be predicted.
     """
     log = training.log
     if not setting.groups:
@@ -117,7 +119,7 @@ def _groups(training: Training, setting: Setting) -> list[tuple[int, ...]]:
 
 
 def _threshold(training: Training, limit: Float[np.ndarray, " C"], setting: Setting) -> Sigma:
-    """Δ + 3σ; `limit`: what it is where Δ is the tail of the healthy residual [SI]."""
+    """Δ + 3σ; `limit`: this sum where Δ comes from the tail of the healthy residual [SI]."""
     log, sigma = training.log, np.zeros(limit.size)
     columns = np.flatnonzero(training.watched)
     sigma[columns] = noise(log.value[:, columns])
@@ -129,23 +131,24 @@ def _threshold(training: Training, limit: Float[np.ndarray, " C"], setting: Sett
     return Sigma(jnp.asarray(delta / log.period_s), jnp.asarray(sigma), jnp.asarray(log.period_s))
 
 
-def _relative(lately: int, spread: Float[np.ndarray, " C"]) -> Relative:
-    """Each residual by its own root mean square over so many ticks."""
+def _relative(rms_ticks: int, spread: Float[np.ndarray, " C"]) -> Relative:
+    """Each residual divided by its own RMS over so many ticks."""
     lowest = jnp.asarray(spread)
-    return Relative(per_channel.SIZE, jnp.asarray(float(lately)), lowest, ROUGHEST * lowest)
+    return Relative(per_channel.SIZE, jnp.asarray(float(rms_ticks)), lowest, ROUGHEST * lowest)
 
 
 def _side_by_side(networks: Sequence[OnlineNetwork], log: Log) -> OnlineNetwork | Several:
-    """One residual, each network answering for its own outputs."""
-    answers = np.array([[c in one.columns for c in range(len(log.channels))] for one in networks])
-    return networks[0] if len(networks) == 1 else Several(tuple(networks), jnp.asarray(answers))
+    """One residual; each network gives its own outputs."""
+    judged = np.array([[c in one.columns for c in range(len(log.channels))] for one in networks])
+    return networks[0] if len(networks) == 1 else Several(tuple(networks), jnp.asarray(judged))
 
 
 RECIPE = Recipe(
     name=NAME,
-    title="Each sensor foretold one sample ahead by a network that learns while it watches, one limit a sensor",
+    title="Each sensor predicted one sample ahead by a network that learns online; one limit for each sensor",
     source="Niu & Zhao 1998",
-    promise=f"{per_channel.PER_HOUR:g} false alarm an hour in all, from the tail of the healthy residual",
+    false_alarm_rate=f"{per_channel.PER_HOUR:g} false alarm an hour over all sensors, from the tail of the healthy "
+    "residual",
     build=build,
     needs=lambda log: Training.of(NAME, log, OFTEN),
 )

@@ -1,4 +1,4 @@
-"""What methods that judge a whole sample by one test share: the monitor around the residual, and its two limits."""
+"""Shared by methods with one multivariate test of the whole sample: the monitor, and its two limits."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -20,15 +20,15 @@ from sensorfault.stages.statistic.repeats import Repeats
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.stages.threshold.scaled_max import ScaledMax
 
-REBUILD_S = 10.0  # a stand-in is believed for so long
+REBUILD_S = 10.0  # a stand-in is used for at most this long [s]
 LEAST_ROWS = 50
 
 
 @dataclass(frozen=True)
 class Training:
-    """A healthy log as such a method sees it.
+    """A healthy log, its watched channels, and the rows that have all of them.
 
-    `rows`: those with every watched channel. `reasons`: path -> why a channel is not watched.
+    `reasons`: path of each channel that is not watched -> why.
     """
 
     log: Log
@@ -38,10 +38,10 @@ class Training:
 
     @classmethod
     def of(cls, name: str, log: Log, often: float = 0.5) -> "Training":
-        """For the method of that name; watched is what comes with at least `often` of the ticks.
+        """For the method called `name`; watched are channels with a value in at least the share `often` of the ticks.
 
         Raises:
-            LogError: too few complete rows, or nothing to watch.
+            LogError: too few complete rows, or no channel to watch.
         """
         watched, reasons = watchable(log, often)
         rows = complete(log, watched)
@@ -56,9 +56,9 @@ class Training:
 def uncalibrated(
     log: Log, residual: Stage[Any, Any, Any, Any], statistic: Stage[Any, Any, Any, Any], readmit_s: float
 ) -> Monitor:
-    """The monitor with its limits off: a joint test of the sample and one of exact repeats a channel.
+    """The monitor with its limits off: a multivariate test of the sample and an exact-repeat test of each channel.
 
-    A channel is taken at its own word again `readmit_s` after the last accusation.
+    A channel is trusted again `readmit_s` after its last alarm.
     """
     channels = len(log.channels)
     return Monitor(
@@ -85,7 +85,7 @@ def limited(
     largest: float,
     runs: Float[np.ndarray, "T C"],
 ) -> Model:
-    """The model: `cov` of the healthy residual, the joint `test`'s largest healthy score, the tape of the repeats."""
+    """The model: `cov` of the healthy residual, `largest` healthy score of `test`, healthy `runs` of exact repeats."""
     log = training.log
     calibrated = eqx.tree_at(
         lambda m: (m.branches[0].threshold.largest, m.branches[1].threshold.limit),
@@ -93,7 +93,7 @@ def limited(
         (jnp.full(1, largest), jnp.asarray(repeat_limit(runs, log.period_s))),
     )
     tests = ((test, None), *(("repeats", channel.path) for channel in log.channels))
-    result = {
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "rows": int(training.rows.sum()),
@@ -101,4 +101,4 @@ def limited(
     }
     sigma = tuple(np.sqrt(np.diag(np.asarray(cov))).tolist())
     watched = tuple(training.watched.tolist())
-    return Model(name, calibrated, log.channels, log.sensors, tests, watched, log.period_s, sigma, result)
+    return Model(name, calibrated, log.channels, log.sensors, tests, watched, log.period_s, sigma, summary)

@@ -1,4 +1,4 @@
-"""What methods that judge each channel by itself share: the monitor around the residual, and its limits."""
+"""Shared by methods that test each channel on its own: the monitor, and its limits."""
 
 from typing import Any
 
@@ -19,9 +19,9 @@ from sensorfault.stages.statistic.relative import Relative
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.stages.threshold.sigma import Sigma
 
-PER_HOUR = 1.0  # false alarms promised, of all channels together
-BLOCK = 50  # ticks: alarms in one block count once
-HORIZON = 10  # ticks for which a stand-in is believed
+PER_HOUR = 1.0  # false alarms an hour that the limits are set for, all channels together
+BLOCK = 50  # ticks; alarms within one block count once
+HORIZON = 10  # a stand-in is used for at most so many ticks
 
 Statistic = Absolute | Relative
 SIZE: Statistic = Absolute()
@@ -34,7 +34,7 @@ def monitor(
     horizon: int = HORIZON,
     statistic: Statistic = SIZE,
 ) -> Monitor:
-    """One limit a channel; all that are over theirs are named at once, and out for that sample."""
+    """One limit for each channel; every channel over its limit is named and excluded for that sample."""
     channels = len(log.channels)
     return Monitor(
         residual=residual,
@@ -49,8 +49,9 @@ def monitor(
 def healthy(
     log: Log, residual: Stage[Any, Any, Any, Any], statistic: Statistic = SIZE
 ) -> tuple[Float[np.ndarray, " C"], Float[np.ndarray, " C"]]:
-    """Limits that a healthy log passes PER_HOUR times an hour in all, +inf for a channel without a residual; and the
-    root mean square of each channel's residual [SI], 1 where there is none.
+    """Limits that healthy data exceed PER_HOUR times an hour over all channels, and each residual's RMS [SI].
+
+    A channel without a residual has limit +inf and RMS 1.
     """
     channels = len(log.channels)
     uncalibrated = monitor(log, residual, Fixed(jnp.full(channels, jnp.inf)), statistic=statistic)
@@ -67,17 +68,17 @@ def model(
     residual: Stage[Any, Any, Any, Any],
     threshold: Fixed | Sigma,
     spread: Float[np.ndarray, " C"],
-    result: dict[str, Any],
+    extra: dict[str, Any],
     horizon: int = HORIZON,
     statistic: Statistic = SIZE,
 ) -> Model:
-    """The model with these limits; a channel whose limit is infinite is not watched."""
+    """The model with these limits; a channel with an infinite limit is not watched. `extra` goes into the summary."""
     paths = [channel.path for channel in log.channels]
     test = "absolute" if isinstance(statistic, Absolute) else "absolute, relative"
     tests = tuple((test, path) for path in paths)
     limits = np.asarray(threshold.limit() if isinstance(threshold, Sigma) else threshold.limit)
     watched = tuple(np.isfinite(limits).tolist())
     finite = {path: float(limit) for path, limit in zip(paths, limits, strict=True) if np.isfinite(limit)}
-    result = {"training_log": log.name, "training_s": log.duration_s, "limits": finite, **result}
+    summary = {"training_log": log.name, "training_s": log.duration_s, "limits": finite, **extra}
     own = monitor(log, residual, threshold, horizon, statistic)
-    return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(spread.tolist()), result)
+    return Model(name, own, log.channels, log.sensors, tests, watched, log.period_s, tuple(spread.tolist()), summary)

@@ -1,4 +1,4 @@
-"""Which channels a method that judges whole samples can watch, and why not the others."""
+"""Which channels a multivariate method can watch, and why it cannot watch the others."""
 
 import numpy as np
 from jaxtyping import Bool
@@ -7,10 +7,10 @@ from sensorfault.logs.table import Log, LogError
 
 
 def watchable(log: Log, often: float = 0.5) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
-    """Channels that come with at least `often` of the ticks and move; for the rest, path -> reason in a few words.
+    """Channels that change and have a value in at least the share `often` of the ticks; path -> reason for the others.
 
     Raises:
-        LogError: nothing is left to watch.
+        LogError: no channel is left to watch.
     """
     measured = log.fresh & np.isfinite(log.value)
     fast = measured.mean(axis=0) >= often
@@ -26,6 +26,6 @@ def watchable(log: Log, often: float = 0.5) -> tuple[Bool[np.ndarray, " C"], dic
         else:
             watched[i] = True
     if not watched.any():
-        said = "; ".join(f"{path}: {reason}" for path, reason in reasons.items())
-        raise LogError(f"{log.name} has no channel to watch ({said}); set watch = true for one that moves.")
+        why = "; ".join(f"{path}: {reason}" for path, reason in reasons.items())
+        raise LogError(f"{log.name} has no channel to watch ({why}); set watch = true for one that changes.")
     return watched, reasons

@@ -1,4 +1,4 @@
-"""Several fitted methods as one monitor, under one budget of false alarms."""
+"""Several fitted methods as one monitor, under one false alarm budget."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -23,10 +23,10 @@ from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.stages.threshold.scaled_max import ScaledMax
 from sensorfault.training.session import Session
 
-MOST = 2  # sensors that one sample may exclude
+MOST = 2  # sensors excluded at one sample, at most
 
 
-def together(
+def composite(
     name: str,
     log: Log,
     parts: Sequence[Recipe],
@@ -35,13 +35,12 @@ def together(
     session: Session,
     kept: Collection[str] = (),
 ) -> Model:
-    """Every part that the log allows, each answering for the channels it watches, the first of several before others.
+    """Fit every part that the log allows; a channel that several parts watch is judged by the first of them.
 
-    Each part comes with limits that promise `per_hour` false alarms if it is alone. Here each of its tests has an equal
-    share of that, so its limit is raised by what the share costs in the tail of its scores on this log. Tests of exact
-    repeats keep their own limits, which promise far less, and so do the parts whose names are in `kept`: a log of
-    minutes shows no tail of what has a memory of a minute. What a part said why it cannot run is in
-    `summary["cannot"]`.
+    The limits of each part alone are set for `per_hour` false alarms. In the composite each test gets an equal share of
+    these, so its limit is raised according to the tail of its scores on this log. Two kinds of test keep their own
+    limits: exact repeats, whose rate is far smaller, and the parts named in `kept`, because a log of minutes does not
+    show the tail of a test with a memory of a minute. `summary["cannot"]` says why a part could not be fitted.
 
     Raises:
         LogError: no part can be fitted on this log.
@@ -49,7 +48,7 @@ def together(
     models: list[Model] = []
     cannot: dict[str, str] = {}
     for recipe in parts:
-        session.tell(f"fitting {recipe.name}")
+        session.progress(f"fitting {recipe.name}")
         try:
             model = recipe.build(log, seed, session)
             cannot |= model.summary.get("cannot", {})
@@ -58,19 +57,19 @@ def together(
             cannot[recipe.name] = str(error)
     if not models:
         raise LogError(" ".join(cannot.values()))
-    session.tell("sharing out the false alarms")
+    session.progress("sharing the false alarm budget")
     limits = _limits(models, log, per_hour, kept)
-    first = _answering(models)
-    of = np.argmax(first, axis=0)  # the part that answers for each channel
-    sigma = tuple(models[p].sigma[c] for c, p in enumerate(of))
-    watched = first[of, np.arange(len(of))]
+    first = _judged_first(models)
+    part = np.argmax(first, axis=0)  # the part that judges each channel
+    sigma = tuple(models[p].sigma[c] for c, p in enumerate(part))
+    watched = first[part, np.arange(len(part))]
     reasons = {
         path: reason
         for model in models
         for path, reason in model.summary.get("not_watched", {}).items()
         if not watched[log.index(path)]
     }
-    result: dict[str, Any] = {
+    summary: dict[str, Any] = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": reasons,
@@ -80,20 +79,20 @@ def together(
     }
     tests = tuple(test for model in models for test in model.tests)
     monitor = _joined(log, models, limits)
-    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, result)
+    return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, summary)
 
 
-def _answering(models: Sequence[Model]) -> Bool[np.ndarray, "P C"]:
-    """Which part answers for which channel: of those that judge it, not the vehicle's motion, the first."""
-    judging = [any(branch.subject == "sensor" for branch in model.monitor.branches) for model in models]
-    watched = np.array([model.watched for model in models]) & np.array(judging)[:, None]
+def _judged_first(models: Sequence[Model]) -> Bool[np.ndarray, "P C"]:
+    """Which part judges which channel: the first that watches it and tests sensors, not the vehicle's motion."""
+    of_sensors = [any(branch.subject == "sensor" for branch in model.monitor.branches) for model in models]
+    watched = np.array([model.watched for model in models]) & np.array(of_sensors)[:, None]
     first: Bool[np.ndarray, "P C"] = watched & (np.cumsum(watched, axis=0) == 1)
     return first
 
 
 def _joined(log: Log, models: Sequence[Model], limits: Sequence[Stage[Any, Any, Any, Any]]) -> Monitor:
-    """The parts' residuals side by side, and all their branches, with these thresholds."""
-    first = _answering(models)
+    """One monitor with the residuals of all parts and all their branches, with these thresholds."""
+    first = _judged_first(models)
     channels = len(log.channels)
     branches = [
         replace(branch, statistic=SelectResidual(branch.statistic, part))
@@ -120,23 +119,23 @@ def _joined(log: Log, models: Sequence[Model], limits: Sequence[Stage[Any, Any, 
 def _limits(
     models: Sequence[Model], log: Log, per_hour: float, kept: Collection[str]
 ) -> list[Stage[Any, Any, Any, Any]]:
-    """Each part's own limit, raised by what the smaller share costs, but for those that are kept."""
+    """Each part's own limit, raised for the smaller share of false alarms; the kept ones unchanged."""
     owns = [branch.threshold for model in models for branch in model.monitor.branches]
-    stands = [branch.certain or model.method in kept for model in models for branch in model.monitor.branches]
+    kept_as_is = [branch.certain or model.method in kept for model in models for branch in model.monitor.branches]
     limits: list[Stage[Any, Any, Any, Any]] = []
-    for own, stays, tape in zip(
-        owns, stands, open_loop_scores(uncalibrated(_joined(log, models, owns)), log), strict=True
+    for own, as_is, tape in zip(
+        owns, kept_as_is, open_loop_scores(uncalibrated(_joined(log, models, owns)), log), strict=True
     ):
-        share = per_hour / (tape.shape[1] * (len(stands) - sum(stands)))
+        share = per_hour / (tape.shape[1] * (len(kept_as_is) - sum(kept_as_is)))
         alone, shared = (tail_limit(tape, log.period_s, rate) for rate in (per_hour, share))
         scaled = (alone > 0) & np.isfinite(shared)
-        dearer = np.divide(shared, alone, out=np.ones_like(alone), where=scaled)
-        limits.append(own if stays else Fixed(jnp.asarray(_fixed(own) * dearer)))
+        raised = np.divide(shared, alone, out=np.ones_like(alone), where=scaled)
+        limits.append(own if as_is else Fixed(jnp.asarray(_fixed(own) * raised)))
     return limits
 
 
 def _fixed(threshold: Stage[Any, Any, Any, Any]) -> Float[np.ndarray, " K"]:
-    """The fixed limit that a part came with."""
+    """The limit of a part as a fixed number."""
     if isinstance(threshold, ScaledMax):
         return np.asarray(threshold.fixed_point())
     assert isinstance(threshold, Fixed)

@@ -1,4 +1,4 @@
-"""What the methods share that judge satellites by an inertial navigation: framing, filter, monitor, model."""
+"""Shared by the methods that test satellites with a GNSS/INS filter: framing, filter, monitor, model."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -22,21 +22,21 @@ from sensorfault.stages.statistic.normalised import Normalised
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.vehicles.train import ElevationNoise, Grade
 
-SYSTEMS = {"G": 32, "R": 27, "E": 36, "C": 63, "J": 10}  # how many satellites each numbers
+SYSTEMS = {"G": 32, "R": 27, "E": 36, "C": 63, "J": 10}  # satellite numbers of each system
 WHEEL = "wheel.speed"
-MOST = 3  # satellites left out at one epoch
-FEW = 60  # epochs to fit on
-# A small unit in a vehicle that shakes: as densities fifteen times those of its data sheet, with which the innovations
-# of a real drive have the spread that the filter claims; the clock is a TCXO's.
+MOST = 3  # satellites excluded at one epoch, at most
+FEW = 60  # epochs needed for a fit
+# A small inertial unit in a vibrating vehicle: noise densities fifteen times those of its data sheet. With these the
+# innovations of a real drive have the spread that the filter predicts. The clock is a TCXO.
 GRADE = Grade(*(jnp.asarray(x) for x in (1e-3, 0.1, 1e-5, 1e-4, 0.1, 0.19, 5e-3, 0.3, 1.0)))
-SIGMA = 1.4, 4.0, float(np.deg2rad(15.0))  # of a pseudorange: overhead, more on the horizon [m], over this [rad]
+SIGMA = 1.4, 4.0, float(np.deg2rad(15.0))  # of a pseudorange: at the zenith, added at the horizon [m], decay [rad]
 RATE_M_S, WHEEL_M_S, ASIDE_M_S = 0.1, 0.1, 0.2
-NORMAL = 0.6745  # a normal number is as often within this as not
+NORMAL = 0.6745  # median size of a standard normal variable
 
 
 @dataclass(frozen=True)
 class Filter:
-    """What the filter takes for granted. `factor`: of the pseudoranges' standard deviation. `bank`: see InsGnss."""
+    """Setting of the filter. `factor`: of the pseudoranges' standard deviation. `bank`: see InsGnss."""
 
     factor: float = 1.0
     bank: bool = False
@@ -44,10 +44,10 @@ class Filter:
 
 
 def framed(name: str, log: Log) -> Framing:
-    """How the log becomes epochs: a slot for each satellite that its systems number, Dopplers where some are of L1.
+    """How the log becomes epochs: a slot for each satellite number of its systems; Dopplers if some are of L1.
 
     Raises:
-        LogError: no satellite has a corrected pseudorange and a place, or there are too few epochs.
+        LogError: no satellite has both a corrected pseudorange and a position, or there are too few epochs.
     """
     seen = satellites(log, "".join(SYSTEMS))
     letters = [letter for letter in SYSTEMS if any(one[0] == letter for one in seen.names)]
@@ -59,13 +59,13 @@ def framed(name: str, log: Log) -> Framing:
     epochs = int((np.isfinite(seen.corrected).sum(axis=1) >= LEAST).sum())
     if epochs < FEW:
         raise LogError(
-            f"{log.name} has {epochs} epochs with {LEAST} satellites, {name} needs {FEW}; give a longer log."
+            f"{log.name} has {epochs} epochs with {LEAST} satellites, but {name} needs {FEW}; give a longer log."
         )
     return how
 
 
 def navigation(how: Framing, filter: Filter) -> InsGnss:
-    """The filter of these satellites."""
+    """The filter for these satellites."""
     letters = list(dict.fromkeys(one[0] for one in how.satellites))
     zenith, horizon, scale = (jnp.asarray(x) for x in SIGMA)
     return InsGnss(
@@ -83,9 +83,7 @@ def navigation(how: Framing, filter: Filter) -> InsGnss:
 def monitor(
     how: Framing, residual: InsGnss, *branches: Branch, recovery: Stage[Any, Any, Any, Any] | None = None
 ) -> Monitor:
-    """The worst are left out, one after the other, as long as more remain than tell a position; without branches
-    with the limits off.
-    """
+    """Excludes the worst satellites one by one while enough remain for a position; without branches: limits off."""
     channels = len(how.channels)
     return Monitor(
         residual=residual,
@@ -100,21 +98,21 @@ def monitor(
 
 
 class Healthy(NamedTuple):
-    """Innovations of a healthy log that is taken in whole: [SI], and in their standard deviations; NaN: none."""
+    """Innovations of a healthy log with the limits off: [SI], and divided by their standard deviations; NaN: none."""
 
     innovation: Float[np.ndarray, "T C"]
     normalised: Float[np.ndarray, "T C"]
 
 
 def healthy(how: Framing, epochs: Log, residual: InsGnss) -> Healthy:
-    """What the filter makes of it with the limits off."""
+    """The innovations of these epochs with the limits off."""
     tape = replay_log(monitor(how, residual), epochs)
     value = np.where(np.asarray(tape.valid), np.asarray(tape.residual), np.nan)
     return Healthy(value, np.asarray(tape.scores[0]) * np.sign(value))
 
 
 def fitted(how: Framing, epochs: Log, filter: Filter) -> Filter:
-    """With the factor by which half of the healthy innovations are within what is half of a normal law."""
+    """The filter with the factor that gives the healthy innovations the median size of a normal distribution."""
     factor = filter.factor
     for _ in range(2):
         seen = healthy(how, epochs, navigation(how, Filter(factor, False, filter.grade)))
@@ -123,14 +121,17 @@ def fitted(how: Framing, epochs: Log, filter: Filter) -> Filter:
 
 
 def model(
-    name: str, log: Log, how: Framing, epochs: Log, own: Monitor, tests: tuple[str, ...], result: dict[str, Any]
+    name: str, log: Log, how: Framing, epochs: Log, own: Monitor, tests: tuple[str, ...], extra: dict[str, Any]
 ) -> Model:
-    """`tests` names what each branch tests of each channel, behind a `*` if of all at once."""
+    """`tests`: the name of each branch's test, one for each channel; with a leading `*` one for all channels.
+
+    `extra` goes into the summary.
+    """
     size = np.abs(healthy(how, epochs, own.residual).innovation)  # type: ignore[arg-type]
-    calibrated = np.isfinite(size).any(axis=0)
+    received = np.isfinite(size).any(axis=0)
     sigma = np.ones(len(how.channels))
-    sigma[calibrated] = np.nanmedian(size[:, calibrated], axis=0) / NORMAL
-    everyone = float(np.median(sigma[calibrated])) if calibrated.any() else 1.0
+    sigma[received] = np.nanmedian(size[:, received], axis=0) / NORMAL
+    typical = float(np.median(sigma[received])) if received.any() else 1.0
     paths = [channel.path for channel in how.channels]
     named: list[tuple[str, str | None]] = []
     for test in tests:
@@ -143,7 +144,7 @@ def model(
         tests=tuple(named),
         watched=(True,) * len(paths),
         tick_s=how.period_s,
-        sigma=tuple(np.where(calibrated, sigma, everyone).tolist()),
-        summary={"training_log": log.name, "training_s": log.duration_s, "epochs": len(epochs), **result},
+        sigma=tuple(np.where(received, sigma, typical).tolist()),
+        summary={"training_log": log.name, "training_s": log.duration_s, "epochs": len(epochs), **extra},
         framing=how,
     )

@@ -1,4 +1,4 @@
-"""The tests that paper C compares with, each behind the same filter, at the textbook's limits."""
+"""The tests that Wang et al. 2023 compare with, on the same filter, with the limits of the textbook."""
 
 from functools import partial
 from statistics import NormalDist
@@ -19,7 +19,7 @@ from sensorfault.stages.statistic.mahalanobis import Mahalanobis
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.session import Session
 
-FALSE_ALARMS = 0.01  # of an epoch
+FALSE_ALARMS = 0.01  # probability at one epoch
 WINDOW_S = 30.0
 
 
@@ -30,7 +30,7 @@ def whole(how: Framing, false_alarms: float = FALSE_ALARMS) -> Branch:
 
 
 def one_by_one(how: Framing, satellites: int, false_alarms: float = FALSE_ALARMS) -> Branch:
-    """Baarda's w of each, at its share of the false alarms of so many satellites."""
+    """Baarda's w of each satellite; `satellites` of them share the false alarms."""
     return Branch(BaardaW(), _share(how, satellites, false_alarms))
 
 
@@ -47,12 +47,12 @@ def _share(how: Framing, satellites: int, false_alarms: float) -> Fixed:
 
 
 def usual(epochs: Log) -> int:
-    """How many measurements an epoch has in the mean, one at least."""
+    """Mean number of measurements of an epoch, at least one."""
     return max(round(float(epochs.fresh.sum() / max(len(epochs), 1))), 1)
 
 
 def _build(name: str, log: Log, seed: int, session: Session) -> Model:
-    session.tell("fitting the noise of pseudoranges")
+    session.progress("fitting the noise of the pseudoranges")
     how = framed(name, log)
     epochs = how.frame(log)
     own = fitted(how, epochs, Filter())
@@ -61,8 +61,8 @@ def _build(name: str, log: Log, seed: int, session: Session) -> Model:
     else:
         branch, test = whole(how), "*innovation"
     calibrated = monitor(how, navigation(how, own), branch)
-    result = {"false_alarms_per_epoch": FALSE_ALARMS, "noise_factor": own.factor}
-    return model(name, log, how, epochs, calibrated, (test,), result)
+    summary = {"false_alarms_per_epoch": FALSE_ALARMS, "noise_factor": own.factor}
+    return model(name, log, how, epochs, calibrated, (test,), summary)
 
 
 def _recipe(name: str, title: str, source: str) -> Recipe:
@@ -70,7 +70,7 @@ def _recipe(name: str, title: str, source: str) -> Recipe:
         name=name,
         title=title,
         source=source,
-        promise=f"{FALSE_ALARMS:g} of healthy epochs, if innovations are white and Gaussian; real ones are not",
+        false_alarm_rate=f"{FALSE_ALARMS:g} of healthy epochs if innovations are white and Gaussian; real ones are not",
         build=partial(_build, name),
         needs=partial(framed, name),
     )
@@ -78,6 +78,8 @@ def _recipe(name: str, title: str, source: str) -> Recipe:
 
 CHI_SQUARE, AVERAGED = "innovation-chi-square", "averaged-innovation"
 RECIPES = (
-    _recipe(CHI_SQUARE, "GNSS/INS filter, χ² of all innovations of an epoch", "Wang et al. 2023, (1)-(9), its rival"),
-    _recipe(AVERAGED, "GNSS/INS filter, averaged innovations (AIME)", "Diesel & Luu 1995; Wang et al. 2023's rival"),
+    _recipe(
+        CHI_SQUARE, "GNSS/INS filter, χ² of all innovations of an epoch", "Wang et al. 2023, (1)-(9), for comparison"
+    ),
+    _recipe(AVERAGED, "GNSS/INS filter, averaged innovations (AIME)", "Diesel & Luu 1995, as in Wang et al. 2023"),
 )

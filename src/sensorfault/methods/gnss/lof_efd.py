@@ -1,4 +1,4 @@
-"""Paper C: the local outlier factor of each satellite's innovation in a tightly coupled GNSS/INS."""
+"""The method of Wang et al. 2023: local outlier factor of each satellite's innovation in a tightly coupled GNSS/INS."""
 
 from functools import partial
 
@@ -20,11 +20,11 @@ from sensorfault.training.outlier_factor import fit_history
 from sensorfault.training.session import Session
 
 NAME = "lof-efd"
-FALSE_ALARMS = 0.01  # of the kernel density
+FALSE_ALARMS = 0.01  # share of the kernel density above the limit
 
 
 def history(innovations: Float[np.ndarray, "T C"], seed: int) -> tuple[LocalDensity, Float[np.ndarray, " n"]]:
-    """The history of normal operation, and the outlier factors of all that was seen then."""
+    """The history of normal operation, and the outlier factors of all innovations in it."""
     seen = innovations[np.isfinite(innovations)]
     known = fit_history(seen[:, None], seed)
     return known, np.asarray(known.outlier_factor(jnp.asarray(seen[:, None])))
@@ -36,24 +36,24 @@ def branch(how: Framing, known: LocalDensity, limit: float, raw: bool = False) -
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:
-    session.tell("fitting the noise of pseudoranges")
+    session.progress("fitting the noise of the pseudoranges")
     how = framed(NAME, log)
     epochs = how.frame(log)
     own = fitted(how, epochs, Filter())
-    session.tell("the history of normal operation")
+    session.progress("storing the history of normal operation")
     residual = navigation(how, own)
     known, factors = history(healthy(how, epochs, residual).normalised, seed)
     limit = density_limit(factors, FALSE_ALARMS)
     calibrated = monitor(how, residual, branch(how, known, limit))
-    result = {"false_alarms_of_density": FALSE_ALARMS, "limit": limit, "noise_factor": own.factor}
-    return model(NAME, log, how, epochs, calibrated, ("outlier factor",), result)
+    summary = {"false_alarms_of_density": FALSE_ALARMS, "limit": limit, "noise_factor": own.factor}
+    return model(NAME, log, how, epochs, calibrated, ("outlier factor",), summary)
 
 
 RECIPE = Recipe(
     name=NAME,
     title="GNSS/INS filter, local outlier factor of each satellite's innovation",
     source="Wang et al. 2023, (1)-(13)",
-    promise="none that holds: 1 % of a kernel density of the history, measured 7 to 22 % of epochs",
+    false_alarm_rate="not reliable: designed for 1 % of epochs by a kernel density of the history, measured 7 to 22 %",
     build=_build,
     needs=partial(framed, NAME),
 )

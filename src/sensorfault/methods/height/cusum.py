@@ -1,4 +1,4 @@
-"""A slow drift of a height, by the cumulative sum of its difference to the barometer."""
+"""Detect a slow drift of a height by the cumulative sum of its difference to the barometer."""
 
 import jax.numpy as jnp
 
@@ -7,7 +7,7 @@ from sensorfault.methods.height.drifting import recipe
 from sensorfault.stages.statistic.cusum import Cusum
 
 NAME = "cusum"
-ALLOWANCE = 0.5  # an offset of one standard deviation is to be found
+ALLOWANCE = 0.5  # set for an offset of one standard deviation
 
 
 def statistic(setting: Setting, channels: int) -> Statistic:
@@ -18,6 +18,6 @@ def statistic(setting: Setting, channels: int) -> Statistic:
 TEST = DriftTest(NAME, statistic, Setting(memory_s=120.0))
 RECIPE = recipe(
     TEST,
-    "Cumulative sum of receiver minus barometer, whose offset follows over two minutes",
+    "Cumulative sum of receiver minus barometer; their offset is tracked over two minutes",
     "Page 1954; for the faults of Wang S. et al.",
 )

@@ -1,4 +1,4 @@
-"""How a test for a slow drift is set, and its statistic."""
+"""The setting of a test for slow drift, and its statistic."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,17 +12,20 @@ from sensorfault.core.stage import Stage
 from sensorfault.numerics.blocks import enough
 from sensorfault.stages.statistic.windowed import Measure, Windowed
 
-GAP_BEATS = 10.0  # without the receiver or the barometer for so long, a window begins anew
+GAP_BEATS = 10.0  # after this many beats without receiver or barometer a window restarts
 
 Statistic = Stage[Any, Any, Any, Any]
 
 
 @dataclass(frozen=True)
 class Setting:
-    """`window_s`: how long a test looks back. `margin`: on the largest healthy score of the training flight.
+    """How a test for slow drift is set.
 
-    `memory_s`: how slowly the offset of the two heights is followed; inf: it is that of the first ten beats for good.
-    `lagging`: whether the lag of one height behind the other is learned. `slots` of a window; 0: one for each beat.
+    `window_s`: length of its window. `margin`: limit over the largest healthy score of the training flight.
+
+    `beat_s`: the heights are averaged over this time. `memory_s`: time constant with which the offset of the two
+    heights is tracked; inf: the offset of the first ten beats is kept. `lagging`: whether the lag of one height behind
+    the other is fitted. `slots` of a window; 0: one for each beat.
     """
 
     window_s: float = 130.0
@@ -38,7 +41,7 @@ class Setting:
         return jnp.asarray(GAP_BEATS * self.beat_s)
 
     def windowed(self, measure: Measure, channels: int) -> Windowed:
-        """This measure of a window with a block for each beat."""
+        """This measure of a window that has one block for each beat."""
         slots = self.slots or enough(self.window_s, self.beat_s)
         return Windowed(measure, jnp.asarray(self.window_s), self.gap_s, channels, slots)
 
@@ -48,7 +51,7 @@ DEFAULT = Setting()
 
 @dataclass(frozen=True)
 class DriftTest:
-    """A test by name: its statistic of so many channels, and how it is set."""
+    """A test: its name, its statistic for a number of channels, and its setting."""
 
     name: str
     statistic: Callable[[Setting, int], Statistic]

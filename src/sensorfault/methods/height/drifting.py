@@ -1,4 +1,4 @@
-"""What the tests for a slow drift of a height share: the difference to the barometer, its limits, the monitor."""
+"""Shared by the tests for slow drift of a height: the difference to the barometer, its limits, the monitor."""
 
 from dataclasses import replace
 
@@ -21,29 +21,31 @@ from sensorfault.training.difference import fit_difference
 from sensorfault.training.session import Session
 from sensorfault.vehicles.fixed_wing import roles
 
-REBUILD_S = 300.0  # what the barometer says stands in for so long: its offset wanders over minutes
-LEAST_WINDOWS = 1.5  # that a training flight must hold
-LEVEL = 2.0  # times the largest healthy difference: a drift that has stopped is over no other limit, yet no healthier
-CEILING = 1.25  # times the limit: a sum goes no higher
-PRESUMES = "presumes the barometer healthy"
-PROMISE = "none; the limit is a tenth above the largest score of the training flight"
+REBUILD_S = 300.0  # the barometer is a stand-in for at most this long: its offset changes over minutes [s]
+LEAST_WINDOWS = 1.5  # a training flight must be this many windows long
+LEVEL = 2.0  # limit over the largest healthy difference; finds a drift that has stopped, which the other test misses
+CEILING = 1.25  # a cumulative sum stops at this many times its limit
+PRESUMES = "assumes a healthy barometer"
+FALSE_ALARM_RATE = "not designed: the limit is 10 % above the largest score of the training flight"
 
 
 def recipe(test: DriftTest, title: str, source: str) -> Recipe:
     """The recipe of a test."""
 
     def build(log: Log, seed: int, session: Session) -> Model:
-        session.tell("learning how two heights differ when healthy")
+        session.progress("measuring how the two heights differ when healthy")
         return drift(log, test)
 
-    return Recipe(test.name, f"{title}; {PRESUMES}", source, PROMISE, build, lambda log: _two_heights(test.name, log))
+    return Recipe(
+        test.name, f"{title}; {PRESUMES}", source, FALSE_ALARM_RATE, build, lambda log: _two_heights(test.name, log)
+    )
 
 
 def drift(log: Log, test: DriftTest) -> Model:
-    """Fit on a healthy flight: the difference of its two heights, and the limit of the test of it.
+    """Fit on a healthy flight: the difference of its two heights, and the limits of the tests.
 
     Raises:
-        LogError: not two heights, or too short a flight.
+        LogError: the log lacks one of the two heights, or the flight is too short.
     """
     setting, channels = test.setting, len(log.channels)
     part = difference(test.name, log, setting)
@@ -53,8 +55,8 @@ def drift(log: Log, test: DriftTest) -> Model:
     score, level = (tape[:, part.measured] for tape in open_loop_scores(uncalibrated, log))
     if not np.isfinite(score).any():
         raise LogError(
-            f"{log.name} is never watched for {setting.window_s:g} s without a break, over which {test.name} looks "
-            "back; give it a longer flight, or one with fewer gaps."
+            f"{log.name} has no stretch of {setting.window_s:g} s without a gap, the window of {test.name}; give it a "
+            "longer flight, or one with fewer gaps."
         )
     limit = setting.margin * float(np.nanmax(score))
     if isinstance(statistic, Cusum):
@@ -71,13 +73,14 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
     """The residual, fitted.
 
     Raises:
-        LogError: not two heights, or too short a flight.
+        LogError: the log lacks one of the two heights, or the flight is too short.
     """
     needed = LEAST_WINDOWS * setting.window_s
     measured, reference = _two_heights(name, log)
     if log.duration_s < needed:
         raise LogError(
-            f"{log.name} lasts {log.duration_s:.0f} s, {name} needs {needed:.0f} s to learn what is healthy; give it a "
+            f"{log.name} lasts {log.duration_s:.0f} s, but {name} needs {needed:.0f} s to learn what is healthy; give "
+            "a "
             "longer flight."
         )
     part = Difference(
@@ -94,16 +97,17 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
 
 
 def _two_heights(name: str, log: Log) -> tuple[int, int]:
-    """Columns of the receiver's height and of the barometer's.
+    """Columns of the receiver's height and of the barometer's height.
 
     Raises:
-        LogError: not both.
+        LogError: the log lacks one of them.
     """
     found = roles(log)
     if found.height is None or found.barometric is None:
         lacks = "no height of a satellite receiver" if found.height is None else "no height of a barometer"
         raise LogError(
-            f"{log.name} has {lacks}; {name} compares the two: name the columns in vehicle.toml, or take a method that "
+            f"{log.name} has {lacks}, but {name} compares both; name the columns in vehicle.toml, or take a method "
+            "that "
             "needs only one."
         )
     return found.height, found.barometric
@@ -117,8 +121,9 @@ def monitor(
     setting: Setting,
     level: Fixed | None = None,
 ) -> Monitor:
-    """The height is out while its test is over the limit, or the difference itself over that of its `level`; the
-    barometer with the learned offset stands in.
+    """The height is excluded while its test is over the limit, or the difference itself over its limit `level`.
+
+    The stand-in is the barometer plus the learned offset.
     """
     channels = len(log.channels)
     verdict_s = np.where(np.arange(channels) == part.measured, 1.5 * setting.beat_s, 0.0)
@@ -136,7 +141,7 @@ def _model(
     name: str, log: Log, calibrated: Monitor, part: Difference, limits: dict[str, float], setting: Setting
 ) -> Model:
     mine = np.arange(len(log.channels)) == part.measured
-    result = {
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "reference": log.channels[part.reference].path,
@@ -154,5 +159,5 @@ def _model(
         watched=tuple(mine.tolist()),
         tick_s=log.period_s,
         sigma=tuple(np.where(mine, np.sqrt(float(part.variance)), 1.0).tolist()),
-        summary=result,
+        summary=summary,
     )

@@ -1,4 +1,4 @@
-"""Do the heights agree: receiver, barometer and vertical speeds, each two against each other over a minute."""
+"""Do the heights agree? Receiver, barometer and vertical speeds, compared in pairs over a minute."""
 
 from itertools import combinations
 
@@ -23,52 +23,52 @@ from sensorfault.vehicles.fixed_wing import Roles, roles
 
 BEAT_S = 1.0
 GAP_S = 3.0  # or three periods of the receiver
-MEMORY_S = 60.0  # over which the difference of two heights is learned
-AFRESH_S = 300.0  # a longer disagreement is taken for a witness set anew
-REBUILD_S = 120.0  # a height is believed for so long on another's word
+MEMORY_S = 60.0  # the difference of two heights is tracked over this time [s]
+AFRESH_S = 300.0  # after a longer disagreement the pair is compared anew, as if a source had been reset [s]
+REBUILD_S = 120.0  # the other height is a stand-in for at most this long [s]
 READMIT_S = 2.0
-MARGIN = 1.5  # on every limit, for what a flight of minutes has not shown
-FREE_M = 1e6  # a limit under which nobody is suspected
-FINEST_M = np.array([1.5, 3.0])  # of a jump and of a drift: healthy heights move apart by so much on any flight
-LEAST_S = 60.0  # that can be compared, after the minute that fills the memory
+MARGIN = 1.5  # factor on every limit: a training flight of minutes does not show everything
+FREE_M = 1e6  # a limit that nothing exceeds
+FINEST_M = np.array([1.5, 3.0])  # of a jump and of a drift: healthy heights differ by so much on any flight
+LEAST_S = 60.0  # needed for the comparison, after the minute that fills the memory
 
 
 def build(log: Log, seed: int, session: Session) -> Model:
-    """Fit on a healthy flight; there is no chance in it.
+    """Fit on a healthy flight; the fit is deterministic.
 
     Raises:
-        LogError: fewer than two witnesses of the height, or too short a flight.
+        LogError: fewer than two sources of the height, or too short a flight.
     """
     found = roles(log)
-    witnesses = _witnesses(log, found)
-    columns, pairs = tuple(witnesses), tuple(combinations(range(len(witnesses)), 2))
+    sources = _height_sources(log, found)
+    columns, pairs = tuple(sources), tuple(combinations(range(len(sources)), 2))
     free = Agreement(
         limit=jnp.full((2, len(pairs)), FREE_M),
-        upward=jnp.asarray(list(witnesses.values())),
+        upward=jnp.asarray(list(sources.values())),
         beat_s=jnp.asarray(BEAT_S),
         gap_s=jnp.asarray(max(GAP_S, 3 * _period_s(log, columns[0]))),
         afresh_s=jnp.asarray(AFRESH_S),
         columns=columns,
         pairs=pairs,
-        owner=_sources(log, found),
+        owner=_owners(log, found),
     )
     residual = TwoHeights(
         memory_s=jnp.asarray(MEMORY_S),
         variance=jnp.asarray(1.0),
-        heights=tuple(c for c, upward in witnesses.items() if upward == 0),
+        heights=tuple(c for c, upward in sources.items() if upward == 0),
         watched=columns,
         channels=len(log.channels),
     )
-    session.tell("measuring how far healthy heights move apart")
+    session.progress("measuring how far healthy heights move apart")
     limit = _limit(log, residual, free)
-    # of the first two witnesses, which are the heights if there are two
+    # of the first two sources, which are the two heights if there are two
     variance = (limit[0, 0] / 3) ** 2 if np.isfinite(limit[0, 0]) else 1.0
     residual = eqx.tree_at(lambda r: r.variance, residual, jnp.asarray(variance))
     agreement = eqx.tree_at(lambda s: s.limit, free, jnp.asarray(limit))
     paths = [log.channels[c].path for c in columns]
     names = [TOGETHER.join((paths[i], paths[j])) for i, j in pairs]
     spans = [f"apart within {length * BEAT_S:g} s" for length in (RECENT, RECENT + PAST)]
-    result = {
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "limits": {s: dict(zip(names, row.tolist(), strict=True)) for s, row in zip(spans, limit, strict=True)},
@@ -85,58 +85,58 @@ def build(log: Log, seed: int, session: Session) -> Model:
         watched=tuple(np.isin(np.arange(len(log.channels)), columns).tolist()),
         tick_s=log.period_s,
         sigma=tuple(sigma.tolist()),
-        summary=result,
+        summary=summary,
     )
 
 
 def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray, "2 P"]:
-    """A margin above the farthest that each pair was apart; +inf for one that could never be compared.
+    """Limit of each pair, a margin above its largest healthy difference; +inf for a pair that was never compared.
 
     Raises:
-        LogError: too few could.
+        LogError: too few samples could be compared.
     """
     score = np.asarray(replay_log(_monitor(log, residual, free, np.inf), log).scores[0])
     tested = np.isfinite(score)
     if tested[:, len(free.pairs) :].any(axis=1).sum() * log.period_s < LEAST_S:
         raise LogError(
-            f"{log.name} is {log.duration_s:.0f} s long, {NAME} needs {2 * LEAST_S:g} s of heights without a gap: one "
-            "minute to remember and one to compare; give a longer flight."
+            f"{log.name} is {log.duration_s:.0f} s long, but {NAME} needs {2 * LEAST_S:g} s of heights without a gap: "
+            "one "
+            "minute to start and one to compare; give a longer flight."
         )
     largest = (FREE_M * np.where(tested, score, 0.0).max(axis=0)).reshape(free.limit.shape)
     known = tested.any(axis=0).reshape(free.limit.shape)
     return np.where(known, MARGIN * np.maximum(largest, FINEST_M[:, None]), np.inf)
 
 
-def _witnesses(log: Log, found: Roles) -> dict[int, float]:
-    """Columns and signs of what says something of the height, the receiver's (or whoever else's) height first.
+def _height_sources(log: Log, found: Roles) -> dict[int, float]:
+    """Columns of all sources of the height, with the sign of a vertical speed, 0 for a height; the receiver's first.
 
     Raises:
         LogError: fewer than two.
     """
     heights = [(c, 0.0) for c in (found.height, found.barometric) if c is not None]
     speeds = [(found.vertical, found.upward), (found.inertial, found.inertial_upward)]
-    witnesses = dict([*heights, *((c, sign) for c, sign in speeds if c is not None)])
-    if not heights or len(witnesses) < 2:
+    sources = dict([*heights, *((c, sign) for c, sign in speeds if c is not None)])
+    if not heights or len(sources) < 2:
         raise LogError(
-            f"{log.name} has {len(witnesses)} channels that tell its height (altitude [m], vertical speed [m/s]), "
-            f"{NAME} compares at least two, one of them an altitude; name the columns in vehicle.toml, or take another "
-            "method."
+            f"{log.name} has {len(sources)} channels of its height (altitude [m], vertical speed [m/s]), but {NAME} "
+            "compares at least two, one of them an altitude; name the columns in vehicle.toml, or take another method."
         )
-    return witnesses
+    return sources
 
 
-def _sources(log: Log, found: Roles) -> tuple[int, ...]:
-    """Who may be wrong together: the channels of a sensor, and the receiver's height and vertical speed even where the
-    log has them as two sensors.
+def _owners(log: Log, found: Roles) -> tuple[int, ...]:
+    """Which channels may fail together: those of one sensor, and the receiver's height and vertical speed even where
+    the log has them as two sensors.
     """
-    source = list(owners(log.channels, log.sensors))
+    owner = list(owners(log.channels, log.sensors))
     if found.height is not None and found.vertical is not None:
-        source = [source[found.height] if s == source[found.vertical] else s for s in source]
-    return tuple(source)
+        owner = [owner[found.height] if s == owner[found.vertical] else s for s in owner]
+    return tuple(owner)
 
 
 def _monitor(log: Log, residual: TwoHeights, agreement: Agreement, limit: float) -> Monitor:
-    """Alarm where a pair is so many times its limit apart. A vertical speed has no stand-in."""
+    """Alarm where a pair differs by more than `limit` times its own limit. A vertical speed has no stand-in."""
     channels = len(log.channels)
     stands_in = np.isin(np.arange(channels), residual.heights) & (len(residual.heights) == 2)
     return Monitor(
@@ -157,10 +157,13 @@ def _period_s(log: Log, column: int) -> float:
 NAME = "height-agreement"
 RECIPE = Recipe(
     name=NAME,
-    title="Receiver, barometer and vertical speeds against each other over a minute; who lies, if a third one knows",
-    source="mean pair against an independent reference, EXPERIMENTS multistep; isolation by who disagrees with whom",
-    promise="none; limits are half as high again as the largest of the healthy flight: a flight of minutes shows no "
-    "rate of what has a memory of a minute",
+    title="Receiver, barometer and vertical speeds, compared in pairs over a minute; isolates the sensor if a third "
+    "source "
+    "can decide",
+    source="this project's own study (`sensorfault reproduce multistep`): mean pair against an independent reference",
+    false_alarm_rate="not designed: each limit is 50 % above the largest healthy difference; a flight of minutes is "
+    "too "
+    "short to measure the rate of a test with a memory of a minute",
     build=build,
-    needs=lambda log: _witnesses(log, roles(log)),
+    needs=lambda log: _height_sources(log, roles(log)),
 )

@@ -1,4 +1,4 @@
-"""What both observers of a height share: which height, how far a roll-out of it errs, and the monitor around it."""
+"""Shared by both observers of a height: the height's column, the error of a roll-out, and the monitor."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,15 +22,15 @@ from sensorfault.training.roll_out import errors
 from sensorfault.vehicles.fixed_wing import Roles, roles
 from sensorfault.vehicles.height import Climb, StepNetwork
 
-PER_HOUR = 1.0  # false alarms promised
-BLOCK_S = 10.0  # alarms within count once
+PER_HOUR = 1.0  # false alarms an hour that the limits are set for
+BLOCK_S = 10.0  # alarms within this time count once [s]
 LEAST_WINDOWS = 20
-AGES = (1, 2, 5, 12, 25, 50, 100)  # steps after which it is measured how far a roll-out errs
+AGES = (1, 2, 5, 12, 25, 50, 100)  # the error of a roll-out is measured after these steps
 
 
 @dataclass(frozen=True)
 class Heights:
-    """A healthy log as an observer of its height sees it: the column of that height, and the roles of the others."""
+    """A healthy log, the column of the height to observe, and the roles of the other columns."""
 
     log: Log
     column: int
@@ -38,7 +38,7 @@ class Heights:
 
     @classmethod
     def of(cls, name: str, log: Log) -> "Heights":
-        """The receiver's height, or the barometer's where there is no other.
+        """The receiver's height, or the barometer's height if there is no other.
 
         Raises:
             LogError: no height.
@@ -53,12 +53,12 @@ class Heights:
         return cls(log, column, found)
 
     def fixes(self, columns: tuple[int, ...], start_s: float = -np.inf, end_s: float = np.inf) -> Fixes:
-        """New heights of a part of the log, with these inputs."""
+        """New heights in a part of the log, with these inputs."""
         return Fixes.of(self.log.between(start_s, end_s), self.column, columns)
 
 
 def observer(model: Climb | StepNetwork, fixes: Fixes, steps: tuple[int, ...], column: int) -> MultistepObserver:
-    """The residual for these numbers of steps, and how its variance grows with the age of a roll-out, as on `fixes`."""
+    """The residual for these numbers of steps; its variance as a function of age is measured on `fixes`."""
     ages = [n for n in AGES if len(fixes.windows(n)) >= LEAST_WINDOWS] or [1]
     spread = np.mean(errors(model, fixes, ages) ** 2, axis=1)
     return MultistepObserver(
@@ -80,7 +80,7 @@ def monitor(
     horizon_s: float,
     period_s: float,
 ) -> Monitor:
-    """A height over any limit is out for that sample, and what was rolled out stands in for up to `horizon_s`."""
+    """A height over any limit is excluded for that sample; the roll-out is its stand-in for at most `horizon_s`."""
     channels = len(log.channels)
     return Monitor(
         residual=residual,
@@ -95,27 +95,27 @@ def monitor(
 def model(
     name: str,
     heights: Heights,
-    watching: Monitor,
-    observed: MultistepObserver,
+    calibrated: Monitor,
+    residual: MultistepObserver,
     period_s: float,
-    result: Mapping[str, Any],
+    extra: Mapping[str, Any],
 ) -> Model:
-    """The model: one test for each number of steps."""
+    """The model, with one test for each number of steps; `extra` goes into the summary."""
     log, path = heights.log, heights.log.channels[heights.column].path
     mine = np.arange(len(log.channels)) == heights.column
-    sigma = np.where(mine, np.sqrt(float(observed.variance[0])), 1.0)
-    tests = tuple((f"roll-out over {n * period_s:.3g} s", path) for n in np.asarray(observed.steps).tolist())
+    sigma = np.where(mine, np.sqrt(float(residual.variance[0])), 1.0)
+    tests = tuple((f"roll-out over {n * period_s:.3g} s", path) for n in np.asarray(residual.steps).tolist())
     summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
-        "steps": np.asarray(observed.steps).tolist(),
-        "inputs": [log.channels[i].path for i in observed.model.columns],
-        "not_watched": {c.path: "not foretold" for c, m in zip(log.channels, mine, strict=True) if not m},
-        **result,
+        "steps": np.asarray(residual.steps).tolist(),
+        "inputs": [log.channels[i].path for i in residual.model.columns],
+        "not_watched": {c.path: "not predicted" for c, m in zip(log.channels, mine, strict=True) if not m},
+        **extra,
     }
     return Model(
         name,
-        watching,
+        calibrated,
         log.channels,
         log.sensors,
         tests,
@@ -127,10 +127,10 @@ def model(
 
 
 def in_steps(spans_s: Sequence[float], fixes: Fixes) -> tuple[int, ...]:
-    """Spans of time in steps from one height to the next, one at least; rising."""
+    """Spans of time as numbers of steps, at least one; in rising order."""
     return tuple(sorted({max(round(span / fixes.period_s), 1) for span in spans_s}))
 
 
 def silent(tests: int) -> Float[Array, " K"]:
-    """Limits that nothing passes."""
+    """Limits that nothing exceeds."""
     return jnp.full(tests, jnp.inf)

@@ -24,10 +24,10 @@ SOURCES = ("receiver", "inertial", "barometric")
 
 @dataclass(frozen=True)
 class Setting:
-    """`spans_s`: how long the roll-outs of the bank are [s], 0.2 to 60; in whole steps, those that the log can show.
+    """`spans_s`: lengths of the bank's roll-outs [s], rounded to whole steps; those too long for the log are left out.
 
-    `source` of the climb: the receiver's own speed as printed, another sensor's, or the barometer; by default the first
-    of them that the log has. `horizon_s`: a stand-in is believed for so long.
+    `source` of the climb rate: the receiver's vertical speed as in the paper, another sensor's, or the barometer;
+    empty: the first of these that the log has. `horizon_s`: a stand-in is used for at most this long.
     """
 
     spans_s: tuple[float, ...] = (0.2, 1.0, 2.4, 5.0, 10.0, 30.0, 60.0)
@@ -36,31 +36,31 @@ class Setting:
 
 
 def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -> Model:
-    """Fit on a healthy log; there is no chance in it.
+    """Fit on a healthy log; the fit is deterministic.
 
     Raises:
-        LogError: no height, no such vertical speed, or too few measurements that follow each other.
+        LogError: no height, no such vertical speed, or too few consecutive measurements.
     """
     heights = Heights.of(NAME, log)
     climb = climbing(heights, setting.source)
     fixes = heights.fixes(climb.columns)
     steps = _steps(fixes, setting)
-    watched = height_observer.observer(climb, fixes, steps, heights.column)
+    observer = height_observer.observer(climb, fixes, steps, heights.column)
     statistic, off = Horizons(heights.column), Fixed(height_observer.silent(len(steps)))
-    uncalibrated = height_observer.monitor(log, watched, statistic, off, setting.horizon_s, fixes.period_s)
+    uncalibrated = height_observer.monitor(log, observer, statistic, off, setting.horizon_s, fixes.period_s)
     score = np.asarray(replay_log(uncalibrated, log).scores[0])
     limit = Fixed(jnp.asarray(tail_limit(score, log.period_s, PER_HOUR / len(steps), BLOCK_S)))
-    watching = height_observer.monitor(log, watched, statistic, limit, setting.horizon_s, fixes.period_s)
+    calibrated = height_observer.monitor(log, observer, statistic, limit, setting.horizon_s, fixes.period_s)
     spans = [f"{n * fixes.period_s:.3g}" for n in steps]
-    result = {"limits": dict(zip(spans, np.asarray(limit.limit).tolist(), strict=True))}
-    return height_observer.model(NAME, heights, watching, watched, fixes.period_s, result)
+    summary = {"limits": dict(zip(spans, np.asarray(limit.limit).tolist(), strict=True))}
+    return height_observer.model(NAME, heights, calibrated, observer, fixes.period_s, summary)
 
 
 def climbing(heights: Heights, source: str = "") -> Climb:
-    """The step model of this source.
+    """The step model that uses this source.
 
     Raises:
-        LogError: an unknown source, or the log does not have it.
+        LogError: the source is unknown, or the log does not have it.
     """
     found, log = heights.roles, heights.log
     baro = found.barometric if found.barometric != heights.column else None
@@ -70,14 +70,14 @@ def climbing(heights: Heights, source: str = "") -> Climb:
         "barometric": (baro, 1.0, False),
     }
     if source and source not in SOURCES:
-        raise LogError(f"{NAME}: '{source}' is no source of a vertical speed; take one of {', '.join(SOURCES)}.")
+        raise LogError(f"{NAME} knows no vertical speed source '{source}'; take one of {', '.join(SOURCES)}.")
     for name in (source,) if source else SOURCES:
         column, upward, speed = have[name]
         if column is not None:
             return Climb(jnp.asarray(upward), (column,), speed)
     what = f"no {source} vertical speed" if source else "neither a vertical speed nor a second height"
     raise LogError(
-        f"{log.name} has {what}, by which {NAME} rolls {log.channels[heights.column].path} out; name the columns in "
+        f"{log.name} has {what}, from which {NAME} predicts {log.channels[heights.column].path}; name the columns in "
         "vehicle.toml, or take another method."
     )
 
@@ -86,13 +86,13 @@ def _steps(fixes: Fixes, setting: Setting) -> tuple[int, ...]:
     """The bank's numbers of steps.
 
     Raises:
-        LogError: not even the shortest can be shown.
+        LogError: the log is too short even for the shortest.
     """
     wanted = height_observer.in_steps(setting.spans_s, fixes)
     steps = tuple(n for n in wanted if len(fixes.windows(n)) >= LEAST_WINDOWS)
     if not steps:
         raise LogError(
-            f"{fixes.name} has {len(fixes.windows(wanted[0]))} unbroken runs of {wanted[0]} steps of its height, "
+            f"{fixes.name} has {len(fixes.windows(wanted[0]))} runs of {wanted[0]} heights without a gap, but "
             f"{NAME} needs {LEAST_WINDOWS}; give it more data, or data with fewer gaps."
         )
     return steps
@@ -104,9 +104,9 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name=NAME,
-    title="Height rolled out by a measured vertical speed over 0.2 s to 60 s, one limit for each",
-    source="Wang S. et al., with their vertical speed and without their network",
-    promise=f"{PER_HOUR:g} false alarm an hour in all, from the tails of the healthy residuals",
+    title="Height predicted from a measured vertical speed over 0.2 s to 60 s, one limit for each span",
+    source="Wang S. et al., flapping-wing aircraft, with the vertical speed and without the network",
+    false_alarm_rate=f"{PER_HOUR:g} false alarm an hour over all limits, from the tails of the healthy residuals",
     build=_build,
     needs=lambda log: climbing(Heights.of(NAME, log)),
 )

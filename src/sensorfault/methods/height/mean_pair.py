@@ -1,4 +1,4 @@
-"""A slow drift of a height, by the newest part of its difference to the barometer against the oldest."""
+"""Detect a slow drift of a height: the newest part of its difference to the barometer against the oldest part."""
 
 import jax.numpy as jnp
 
@@ -19,5 +19,5 @@ TEST = DriftTest(NAME, statistic)
 RECIPE = recipe(
     TEST,
     "Receiver minus barometer: the newest third of 130 s against the oldest",
-    "EXPERIMENTS, slow drift; for the faults of Wang S. et al.",
+    "this project's own study (`sensorfault reproduce multistep`), for the faults of Wang S. et al.",
 )

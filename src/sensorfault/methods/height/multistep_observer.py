@@ -1,4 +1,4 @@
-"""Paper D: the height of an aircraft foretold over N steps by a network, under a limit that follows its error."""
+"""The method of Wang S. et al.: a network predicts an aircraft's height over N steps; the limit follows its error."""
 
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
@@ -24,17 +24,17 @@ from sensorfault.training.roll_out import errors
 from sensorfault.training.session import Session
 
 NAME = "multistep-observer"
-TAUGHT = 0.7  # of the healthy log; the limits come from the rest
-ALPHA = 0.01  # false alarms that the companion's chi-square test allows, as printed
-CHI_SQUARE = NormalDist().inv_cdf(1 - ALPHA / 2) ** 2  # of one degree of freedom
-LOUD = 1e9
+TRAINING_SHARE = 0.7  # of the healthy log; the limits come from the rest
+ALPHA = 0.01  # false alarm probability of the companion filter's chi-square test, as in the paper
+CHI_SQUARE = NormalDist().inv_cdf(1 - ALPHA / 2) ** 2  # with one degree of freedom
+OFF = 1e9  # factor that raises the limits beyond every score
 
 
 @dataclass(frozen=True)
 class Setting:
-    """`steps` N, each a member of the bank; 12 is the paper's best. `spans_s`: instead, in seconds. The network is
-    trained over the longest. `horizon_s`: a stand-in is believed for so long. `printed`: a = b = 1; by default both are
-    what the promise asks for.
+    """`steps`: numbers N of steps, each a member of the bank; the paper finds 12 best. `spans_s`: the same in seconds,
+    used instead if given. The network is trained over the longest. `horizon_s`: a stand-in is used for at most this
+    long. `printed`: a = b = 1 as in the paper; by default both are set for the designed false alarm rate.
     """
 
     steps: tuple[int, ...] = (12,)
@@ -48,20 +48,20 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     """Fit on a healthy log: the height from vertical speed, pitch, throttle and elevator, as far as the log has them.
 
     Raises:
-        LogError: no height, nothing that foretells it, or too few measurements that follow each other.
+        LogError: no height, no input to predict it from, or too few consecutive measurements.
     """
-    heights, cut = Heights.of(NAME, log), log.time[0] + TAUGHT * log.duration_s
+    heights, cut = Heights.of(NAME, log), log.time[0] + TRAINING_SHARE * log.duration_s
     columns = _columns(heights)
     learn, unseen = heights.fixes(columns, end_s=cut), heights.fixes(columns, cut)
     steps = _steps(learn, unseen, setting)
-    session.tell(f"teaching a network over {max(steps)} steps")
-    taught = train_steps(learn, (max(steps),), (seed,), setting.schedule)
-    (network,) = taught.nets[0]
-    session.tell("measuring what it leaves")
-    watched = height_observer.observer(network, unseen, steps, heights.column)
+    session.progress(f"training a network over {max(steps)} steps")
+    trained = train_steps(learn, (max(steps),), (seed,), setting.schedule)
+    (network,) = trained.nets[0]
+    session.progress("measuring its residual")
+    observer = height_observer.observer(network, unseen, steps, heights.column)
     companion = fit_height_kalman(log, heights.column, heights.roles)
     mine = np.arange(len(log.channels)) == heights.column
-    residual = Several((watched, companion), jnp.asarray(np.stack([mine, mine & False])))
+    residual = Several((observer, companion), jnp.asarray(np.stack([mine, mine & False])))
     threshold = Adaptive(
         a=jnp.ones(len(steps)),
         b=jnp.ones(len(steps)),
@@ -73,25 +73,25 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     if not setting.printed:
         threshold = _calibrated(heights, residual, threshold, setting, unseen.period_s, cut)
     weights = {"a": np.asarray(threshold.a).tolist(), "b": np.asarray(threshold.b).tolist()}
-    result = {"epochs": int(np.isfinite(taught.loss[0, 0]).sum()), **weights}
-    watching = height_observer.monitor(
+    summary = {"epochs": int(np.isfinite(trained.loss[0, 0]).sum()), **weights}
+    calibrated = height_observer.monitor(
         log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s
     )
-    return height_observer.model(NAME, heights, watching, watched, unseen.period_s, result)
+    return height_observer.model(NAME, heights, calibrated, observer, unseen.period_s, summary)
 
 
 def _columns(heights: Heights) -> tuple[int, ...]:
-    """What the network is told besides the height.
+    """Inputs of the network besides the height.
 
     Raises:
-        LogError: nothing.
+        LogError: the log has none of them.
     """
     found = heights.roles
     climb = found.vertical if found.vertical is not None else found.inertial
     columns = tuple(i for i in (climb, *found.inputs) if i is not None)
     if not columns:
         raise LogError(
-            f"{heights.log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} foretells the "
+            f"{heights.log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} predicts the "
             "height; name the columns in vehicle.toml, or take another method."
         )
     return columns
@@ -101,14 +101,14 @@ def _steps(learn: Fixes, unseen: Fixes, setting: Setting) -> tuple[int, ...]:
     """The bank's numbers of steps.
 
     Raises:
-        LogError: one of them cannot be judged on what is not learned from.
+        LogError: the part of the log that is not used for training is too short for one of them.
     """
     steps = height_observer.in_steps(setting.spans_s, learn) if setting.spans_s else setting.steps
     for n in steps:
         if not len(unseen.windows(n)):
             raise LogError(
-                f"{learn.name} has no unbroken run of {n} steps of its height in its last part, on which {NAME} sets "
-                "its limits; give it more data, or take fewer steps."
+                f"{learn.name} has no {n} heights in a row without a gap in its last part, on which {NAME} sets its "
+                "limits; give it more data, or take fewer steps."
             )
     return steps
 
@@ -120,22 +120,24 @@ def _statistic(heights: Heights) -> SelectResidual:
 def _calibrated(
     heights: Heights, residual: Several, threshold: Adaptive, setting: Setting, period_s: float, cut: float
 ) -> Adaptive:
-    """a = b such that a healthy log passes the limit as often as promised: from what was not learned from."""
-    loud = replace(threshold, a=threshold.a * LOUD, b=threshold.b * LOUD)
+    """a = b such that healthy data exceed the limit PER_HOUR times an hour, from the part not used for training."""
+    off = replace(threshold, a=threshold.a * OFF, b=threshold.b * OFF)
     log = heights.log
-    watching = height_observer.monitor(log, residual, _statistic(heights), loud, setting.horizon_s, period_s)
-    tape = replay_log(watching, log)
-    ratio = np.asarray(tape.scores[0]) / np.asarray(tape.limits[0]) * LOUD
+    uncalibrated = height_observer.monitor(log, residual, _statistic(heights), off, setting.horizon_s, period_s)
+    tape = replay_log(uncalibrated, log)
+    ratio = np.asarray(tape.scores[0]) / np.asarray(tape.limits[0]) * OFF
     factor = tail_limit(ratio[log.time >= cut], log.period_s, PER_HOUR / ratio.shape[1], BLOCK_S)
     return replace(threshold, a=jnp.asarray(factor), b=jnp.asarray(factor))
 
 
 RECIPE = Recipe(
     name=NAME,
-    title="Height rolled out over 12 steps by a network that feeds back what it foretold, under a limit that follows a "
-    "companion filter and the observer's own error",
+    title="Height predicted over 12 steps by a network that feeds its own prediction back; the limit follows a "
+    "companion "
+    "filter and the observer's own error",
     source="Wang S. et al., multi-step neural network observer of a flapping-wing aircraft",
-    promise=f"{PER_HOUR:g} false alarm an hour, from the tail of the residual over its limit on data not learned from",
+    false_alarm_rate=f"{PER_HOUR:g} false alarm an hour, from the tail of residual over limit on data not used for "
+    "training",
     build=build,
     needs=lambda log: _columns(Heights.of(NAME, log)),
 )

@@ -1,4 +1,4 @@
-"""A slow drift of a height, by the likelihood ratio of a ramp in its difference to the barometer."""
+"""Detect a slow drift of a height by the likelihood ratio of a ramp in its difference to the barometer."""
 
 from sensorfault.methods.height.drift_setting import DriftTest, Setting, Statistic
 from sensorfault.methods.height.drifting import recipe

@@ -1,4 +1,4 @@
-"""A slow drift of a height, by the slope of its difference to the barometer over two minutes."""
+"""Detect a slow drift of a height by the slope of its difference to the barometer over two minutes."""
 
 from sensorfault.methods.height.drift_setting import DriftTest, Setting, Statistic
 from sensorfault.methods.height.drifting import recipe
@@ -16,5 +16,5 @@ TEST = DriftTest(NAME, statistic)
 RECIPE = recipe(
     TEST,
     "Slope of receiver minus barometer over 130 s",
-    "EXPERIMENTS, slow drift; for the faults of Wang S. et al.",
+    "this project's own study (`sensorfault reproduce multistep`), for the faults of Wang S. et al.",
 )

@@ -1,4 +1,4 @@
-"""Paper A's comparator of the extreme learning machine: the same autoencoder, trained by backpropagation."""
+"""The autoencoder trained by backpropagation, which Min et al. 2021 compare with their extreme learning machine."""
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.common.multivariate import Training
@@ -19,9 +19,11 @@ def build(log: Log, seed: int, session: Session, plan: Plan = PLAN) -> Model:
 
 RECIPE = Recipe(
     name=NAME,
-    title="The autoencoder by backpropagation, norm of the reconstruction error, scaled largest training error",
-    source="Min et al. 2021, section 3.1: the comparator of the extreme learning machine",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    title="Autoencoder trained by backpropagation; norm of the reconstruction error; limit: largest training error, "
+    "scaled",
+    source="Min et al. 2021, section 3.1, compared there with the extreme learning machine",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=build,
     needs=lambda log: Training.of(NAME, log),
 )

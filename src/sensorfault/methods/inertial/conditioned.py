@@ -1,4 +1,4 @@
-"""A conditioning residual made into a monitor."""
+"""The monitor around a conditioning residual."""
 
 import equinox as eqx
 import numpy as np
@@ -13,18 +13,18 @@ from sensorfault.stages.statistic.mahalanobis import Mahalanobis
 from sensorfault.training.conditioning import LAGS, fit_conditioning, unbroken
 from sensorfault.training.cross_validation import BLOCKS
 
-OFTEN = 0.9  # of the ticks: a channel that is often late breaks the rows that have to follow each other
-READMIT_S = 0.5  # a channel is taken at its own word again so long after the last accusation
+OFTEN = 0.9  # share of the ticks with a value; a channel that is often late breaks the runs of consecutive rows
+READMIT_S = 0.5  # a channel is trusted again this long after its last alarm [s]
 
 
 def conditioned(name: str, log: Log, levels: bool = True, cross_validated: bool = True) -> Model:
-    """Fit on a healthy log: weights, then the limits from a replay with the limits off.
+    """Fit on a healthy log: first the weights, then the limits, from a replay with the limits off.
 
-    Without `levels` changes are conditioned on changes. The largest healthy score is that of the training data or, with
-    `cross_validated`, of contiguous blocks left out of the fit, if it is larger.
+    With `levels` rows are conditioned on rows, else changes on changes. The limit comes from the largest score of the
+    training data or, with `cross_validated`, of contiguous blocks left out of the fit, whichever is larger.
 
     Raises:
-        LogError: too few complete rows, or nothing to watch.
+        LogError: too few complete rows, or no channel to watch.
     """
     training = in_a_row(name, log)
     residual = fit_conditioning(log.time, log.value, training.rows, training.watched, levels=levels)
@@ -38,10 +38,10 @@ def conditioned(name: str, log: Log, levels: bool = True, cross_validated: bool 
 
 
 def in_a_row(name: str, log: Log) -> Training:
-    """The log as conditioning sees it: rows that follow LAGS others, of channels that come with nearly every tick.
+    """The training data for conditioning: channels with a value in nearly every tick, rows that follow LAGS others.
 
     Raises:
-        LogError: nothing to watch, or too few such rows.
+        LogError: no channel to watch, or too few such rows.
     """
     training = Training.of(name, log, OFTEN)
     rows = int(unbroken(log.time, training.rows, LAGS).sum())
@@ -54,7 +54,7 @@ def in_a_row(name: str, log: Log) -> Training:
 
 
 def unseen_scores(uncalibrated: Monitor, training: Training, levels: bool) -> Float[np.ndarray, "T K"]:
-    """The joint test's score of each block of the log, by weights fitted on the other blocks."""
+    """Score of the multivariate test for each block of the log, with weights fitted on the other blocks."""
     log, unseen = training.log, []
     for block in np.array_split(np.arange(len(log)), BLOCKS):
         known = training.rows.copy()

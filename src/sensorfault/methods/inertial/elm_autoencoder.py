@@ -1,4 +1,4 @@
-"""Paper A's detector of instantaneous faults: an extreme learning machine that copies a healthy sample."""
+"""The extreme-learning autoencoder with which Min et al. 2021 detect instantaneous faults."""
 
 from functools import partial
 
@@ -17,9 +17,10 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="elm-autoencoder",
-    title="Extreme-learning autoencoder, norm of the reconstruction error, scaled largest training error",
+    title="Extreme-learning autoencoder; norm of the reconstruction error; limit: largest training error, scaled",
     source="Min et al. 2021, section 2.1, equations (3)-(11)",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=_build,
     needs=partial(Training.of, "elm-autoencoder"),
 )

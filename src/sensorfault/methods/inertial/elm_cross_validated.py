@@ -1,4 +1,4 @@
-"""Paper A's autoencoder under a limit that knows what it does to a drive it has not seen."""
+"""The autoencoder of Min et al. 2021 with a limit found by cross-validation."""
 
 from functools import partial
 
@@ -22,9 +22,10 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="elm-cross-validated",
-    title="Extreme-learning autoencoder, norm of the reconstruction error, scaled largest error on blocks left out",
-    source="Min et al. 2021, section 2.1; the limit by cross-validation instead of equation (10)'s training error",
-    promise="none in numbers: the limit is the largest error on healthy blocks left out of the fit, scaled",
+    title="Extreme-learning autoencoder; norm of the reconstruction error; limit: largest error on blocks left out, "
+    "scaled",
+    source="Min et al. 2021, section 2.1, with cross-validation in place of the training error of equation (10)",
+    false_alarm_rate="not designed: the limit is the largest error on healthy blocks left out of the fit, scaled",
     build=_build,
     needs=partial(Training.of, "elm-cross-validated"),
 )

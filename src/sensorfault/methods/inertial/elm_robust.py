@@ -1,4 +1,4 @@
-"""Paper A's autoencoder for training data in which a few rows are wrong."""
+"""The autoencoder of Min et al. 2021 for training data with a few wrong rows."""
 
 from functools import partial
 
@@ -22,9 +22,11 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="elm-robust",
-    title="Extreme-learning autoencoder, norm of the reconstruction error, scaled largest that the others explain",
-    source="Min et al. 2021, section 2.1; extremes as far as the tail explains them (Hill 1975)",
-    promise="none: the limit is the largest explained training error, scaled",
+    title="Extreme-learning autoencoder; norm of the reconstruction error; limit: largest training error after removal "
+    "of "
+    "outliers, scaled",
+    source="Min et al. 2021, section 2.1; outliers by an estimate of the tail (Hill 1975)",
+    false_alarm_rate="not designed: the limit is the largest training error that is no outlier, scaled",
     build=_build,
     needs=partial(Training.of, "elm-robust"),
 )

@@ -1,4 +1,4 @@
-"""What the last few rows lead to expect of the newest one: the plain method that a network has to beat."""
+"""Predict the newest row linearly from the few rows before it: the baseline that a network has to beat."""
 
 from functools import partial
 
@@ -15,9 +15,11 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="linear-conditioning",
-    title="Newest row given the four before it, largest whitened residual of one channel, scaled largest unseen score",
-    source="conditional mean of a Gaussian vector; the limit as Min et al. 2021, equations (10)-(11), cross-validated",
-    promise="none in numbers: the limit is the largest score on healthy blocks left out of the fit, scaled",
+    title="Newest row given the four before it; largest whitened residual of a channel; limit: largest score on blocks "
+    "left "
+    "out, scaled",
+    source="conditional mean of a Gaussian vector; limit as in Min et al. 2021, equations (10)-(11), cross-validated",
+    false_alarm_rate="not designed: the limit is the largest score on healthy blocks left out of the fit, scaled",
     build=_build,
     needs=partial(in_a_row, "linear-conditioning"),
 )

@@ -1,4 +1,4 @@
-"""The baseline every reconstruction has to beat: three principal components under the same limit."""
+"""Principal components, the baseline of the reconstruction methods: three components, the same limit."""
 
 from functools import partial
 
@@ -17,9 +17,10 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 RECIPE = Recipe(
     name="pca",
-    title="Principal components, norm of the reconstruction error, scaled largest training error",
-    source="Jackson & Mudholkar 1979; the limit as Min et al. 2021, equations (10)-(11)",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    title="Principal components; norm of the reconstruction error; limit: largest training error, scaled",
+    source="Jackson & Mudholkar 1979; limit as in Min et al. 2021, equations (10)-(11)",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=_build,
     needs=partial(Training.of, "pca"),
 )

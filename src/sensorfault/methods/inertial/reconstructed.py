@@ -1,4 +1,4 @@
-"""A reconstruction residual made into a monitor: what the autoencoder and its baseline share."""
+"""The monitor around a reconstruction residual, shared by the autoencoders and their baseline."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -12,18 +12,18 @@ from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.exchange import Exchange
 from sensorfault.training.cross_validation import Fit, largest_unseen_norm
 
-READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
+READMIT_S = 2.0  # a channel is trusted again this long after its last alarm [s]
 
 
 def reconstructed(name: str, log: Log, fit: Fit, cross_validated: bool = False, robust: bool = False) -> Model:
-    """Fit on a healthy log: weights, then the limits from a replay with the limits off.
+    """Fit on a healthy log: first the weights, then the limits, from a replay with the limits off.
 
-    The largest healthy error is that of the training data, as published; with `cross_validated` that of blocks left out
-    of the fit, if it is larger. With `robust` a few contaminated rows ruin neither scaling nor weights nor limit: what
-    lies farther out than the rest explains is not learned from and has no say in what is largest.
+    The limit comes from the largest error on the training data, as published; with `cross_validated` from that on
+    blocks left out of the fit, if it is larger. With `robust` a few contaminated rows spoil neither scaling, weights
+    nor limit: outliers are not used for any of them.
 
     Raises:
-        LogError: too few complete rows, or nothing to watch.
+        LogError: too few complete rows, or no channel to watch.
     """
     training = Training.of(name, log)
     watched = training.watched

@@ -1,4 +1,4 @@
-"""Paper A's second comparator of the LSTM: an autoregressive model, by least squares."""
+"""An autoregressive model fitted by least squares, which Min et al. 2021 compare with their LSTM."""
 
 from sensorfault.logs.table import Log
 from sensorfault.methods.position.predicted import LENGTH, Positions, from_windows
@@ -11,15 +11,16 @@ NAME = "ar-predictor"
 
 
 def build(log: Log, seed: int, session: Session, length: int = LENGTH) -> Model:
-    """Fit on a healthy log; there is no chance in it."""
+    """Fit on a healthy log; the fit is deterministic."""
     return from_windows(NAME, log, length, fit_autoregression)
 
 
 RECIPE = Recipe(
     name=NAME,
-    title="Position predicted by an autoregressive model of the 30 samples before, scaled largest training error",
-    source="Min et al. 2021, section 3.2: the comparator of the LSTM",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    title="Position predicted by an autoregressive model of the last 30 samples; limit: largest training error, scaled",
+    source="Min et al. 2021, section 3.2, compared there with the LSTM",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=build,
     needs=lambda log: Positions.of(NAME, log),
 )

@@ -1,4 +1,4 @@
-"""Does the car go where its wheels point: a Kalman filter on the kinematic bicycle, judged at once and over 10 s."""
+"""Does the car move where its wheels point? A Kalman filter on the kinematic bicycle, tested at once and over 10 s."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -23,18 +23,18 @@ from sensorfault.training.bicycle import WARM_S, check_bicycle, fit_bicycle, nor
 from sensorfault.training.session import Session
 from sensorfault.vehicles.car import roles
 
-WINDOW_S = 10.0  # of Jarque and Bera's test, as published
-INSTANT_BLOCK_S = 5.0  # one alarm counts once in so long
+WINDOW_S = 10.0  # of the Jarque-Bera test, as published
+INSTANT_BLOCK_S = 5.0  # alarms of the instant tests within this time count once [s]
 PER_HOUR = 1.0  # false alarms: half for the instant tests, half for the windows
-MARGIN = 1.25  # on the windows' limits, for what a drive of minutes has not shown
-LEAST_Z = 4.5  # no mean or variance is judged more sharply than sliding windows of chance alone allow
+MARGIN = 1.25  # factor on the limits of the windows: a training drive of minutes does not show everything
+LEAST_Z = 4.5  # smallest limit for mean and variance: sliding windows of pure noise already reach this
 
 
 def bicycle_kalman(name: str, log: Log) -> Model:
     """Fit on a healthy drive of a car.
 
     Raises:
-        LogError: no position, speed, or yaw rate and steering angle, a wheelbase of zero, or a drive that never moves.
+        LogError: no position, no speed, neither yaw rate nor steering angle, no wheelbase, or a car that never moves.
     """
     filter = fit_bicycle(log, roles(log), log.wheelbase_m, log.steering_ratio)
     measured, channels = filter.columns.measured, len(log.channels)
@@ -67,7 +67,7 @@ def bicycle_kalman(name: str, log: Log) -> Model:
     tests = [f"whitened innovation of {what}" for what in ("position", "velocity")]
     paths = [log.channels[c].path for c in measured]
     tests += [f"{test} of {path}" for test in ("Jarque-Bera", "mean", "variance") for path in paths]
-    result = {
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "turned_by": "steering angle" if filter.columns.steering else "yaw rate",
@@ -82,7 +82,7 @@ def bicycle_kalman(name: str, log: Log) -> Model:
         watched=tuple(i in measured for i in range(channels)),
         tick_s=log.period_s,
         sigma=(1.0,) * channels,
-        summary=result,
+        summary=summary,
     )
 
 
@@ -92,13 +92,13 @@ def _warm(log: Log) -> Float[np.ndarray, " T"]:
 
 
 def _limits(uncalibrated: Monitor, window: Normality, log: Log) -> list[Float[Array, " K"]]:
-    """From the training drive: half of the alarms allowed to the instant tests, half to the windows."""
+    """Limits from the training drive; half of the allowed alarms go to the instant tests, half to the windows."""
     rows = log.time > log.time[0] + WARM_S
     instant, windows = (tape[rows] for tape in open_loop_scores(uncalibrated, log))
     at_once = gumbel_limit(instant, _warm(log), PER_HOUR / 2 / instant.shape[1], INSTANT_BLOCK_S)
     share = PER_HOUR / 2 / windows.shape[1]
     width = len(window.watched)
-    # of the root, which is about the kurtosis: Jarque and Bera's statistic has a heavy tail
+    # on the square root, which is about the kurtosis: the Jarque-Bera statistic itself has a heavy tail
     normal = gumbel_limit(np.sqrt(windows[:, :width]), _warm(log), share, WINDOW_S) ** 2
     chance = 1 - share * WINDOW_S / 3600
     finite = jarque_bera_quantile(WINDOW_S / np.asarray(window.every) / _periods(log, window.watched), chance)
@@ -112,17 +112,19 @@ def _periods(log: Log, columns: tuple[int, ...]) -> Float[np.ndarray, " W"]:
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:
-    session.tell("fitting noise and lags of the bicycle")
+    session.progress("fitting noise and lags of the bicycle model")
     return bicycle_kalman(RECIPE.name, log)
 
 
 RECIPE = Recipe(
     name="bicycle-kalman",
-    title="Kalman filter on the kinematic bicycle: largest whitened innovation at once, Jarque-Bera, mean and variance "
-    "over 10 s; judges the motion, given healthy sensors",
+    title="Kalman filter on the kinematic bicycle: whitened innovation of each sample; Jarque-Bera, mean and variance "
+    "over "
+    "10 s; tests the motion, assumes healthy sensors",
     source="Min et al. 2021, section 3, equations (16)-(26)",
-    promise="one false alarm an hour, extrapolated from the largest scores of the training drive's blocks, and a "
-    "quarter on top of the windows' limits",
+    false_alarm_rate="one false alarm an hour, extrapolated from the block maxima of the training drive; the limits of "
+    "the "
+    "windows are 25 % higher than that",
     build=_build,
     needs=lambda log: check_bicycle(log, roles(log)),
 )

@@ -1,4 +1,4 @@
-"""What persistence and linear extrapolation share: a car's position judged as one, an arm's joints each by itself."""
+"""Shared by persistence and linear extrapolation: one test of a car's position, or one test of each joint of an arm."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -14,10 +14,10 @@ from sensorfault.vehicles.arm import joints
 
 
 def from_last(name: str, log: Log, order: int) -> Model:
-    """The monitor of an extrapolation from the last measurements.
+    """The model that extrapolates the last measurements.
 
     Raises:
-        LogError: neither joints nor positions; joints that rest; too few positions, or a drive that never moves.
+        LogError: neither joints nor positions, joints that never move, too few positions, or a car that never moves.
     """
     positions = joints_or_position(name, log)
     if positions is None:
@@ -33,17 +33,17 @@ def from_last(name: str, log: Log, order: int) -> Model:
 
 
 def joints_or_position(name: str, log: Log) -> Positions | None:
-    """The positions; None if the log is of joints.
+    """The positions; None if the log has joints.
 
     Raises:
-        LogError: neither; too few positions, or a drive that never moves.
+        LogError: neither, too few positions, or a car that never moves.
     """
     found = joints(log)
     return None if found.rates or found.angles else Positions.of(name, log)
 
 
 def _of_arm(name: str, log: Log, order: int) -> Model:
-    """Encoders count on, so no angle is taken within half a turn."""
+    """Encoders count beyond a full turn, so angles are not wrapped."""
     watched, reasons = watchable(log)
     residual = Extrapolation(
         watched=jnp.asarray(watched),

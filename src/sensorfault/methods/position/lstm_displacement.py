@@ -1,4 +1,4 @@
-"""Paper A's network asked for what a jam cannot fake: the way of the last second, without a look at its positions."""
+"""An LSTM estimates the displacement of the last second without that second's positions, so a frozen receiver shows."""
 
 from dataclasses import dataclass, field
 
@@ -22,14 +22,14 @@ from sensorfault.training.windows import Windows
 from sensorfault.vehicles.car import moving
 
 NAME = "lstm-displacement"
-SECOND = 1.0  # of the position that is not seen [s]
-STRIDE_S = 0.1  # samples averaged to one row of the window
+SECOND = 1.0  # the network does not get the positions of this last time [s]
+STRIDE_S = 0.1  # samples within this time are averaged to one row of the window [s]
 LEAST_MEND = 0.1  # [m]
 
 
 @dataclass(frozen=True)
 class Size:
-    """Cells of the layers, and how they are trained."""
+    """Cells of each layer, and the training plan."""
 
     cells: tuple[int, ...] = (16, 16)
     plan: Plan = field(default_factory=Plan)
@@ -39,9 +39,9 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     """Fit on a healthy log.
 
     Raises:
-        LogError: no positions, neither velocity nor inertial unit, too little of them, or a drive that never moves.
+        LogError: no positions, neither velocity nor inertial unit, too little data, or a car that never moves.
     """
-    positions, inertial = _told_by(log)
+    positions, inertial = _positions_and_inertial(log)
     untrained = _untrained(positions, inertial, seed, size)
     x = samples(log.time, log.value, log.fresh)
     uncalibrated = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
@@ -51,15 +51,15 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     windows, mend = _windows(seen, valid[:, list(positions.columns)].all(axis=1))
     network = train(untrained.network, windows, size.plan, seed, session).net
     residual = eqx.tree_at(lambda r: (r.network, r.mend), untrained, (network, jnp.asarray(mend)))
-    result = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
-    return limited(NAME, positions, residual, result, METRE / _cosines(positions))
+    summary = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
+    return limited(NAME, positions, residual, summary, METRE / _cosines(positions))
 
 
 METRE = 1 / SEMI_MAJOR_AXIS  # [rad]
 
 
 def _cosines(positions: Positions) -> np.ndarray:
-    """How much shorter a metre's angle is than on the equator, for latitude and longitude."""
+    """Length of a degree of latitude and of longitude relative to the equator."""
     latitude = np.nanmedian(positions.log.value[:, positions.columns[0]])
     return np.array([1.0, max(float(np.cos(latitude)), 1e-3)])
 
@@ -93,7 +93,7 @@ def _untrained(positions: Positions, inertial: tuple[int, ...], seed: int, size:
 
 
 def _windows(seen: Seen, valid: np.ndarray) -> tuple[Windows, float]:
-    """What the network is to learn: the way that `base` leaves, in units of its healthy size [m]."""
+    """Training windows: the displacement minus `base`, divided by its healthy RMS [m]; and that RMS."""
     left = np.asarray(seen.way - seen.base)[valid]
     mend = max(float(np.sqrt((left**2).mean())) if len(left) else 0.0, LEAST_MEND)
     rows = np.asarray(seen.window)[valid]
@@ -101,14 +101,18 @@ def _windows(seen: Seen, valid: np.ndarray) -> tuple[Windows, float]:
     return Windows(rows.reshape(-1, width), np.arange(count) * length, left / mend, length), mend
 
 
-def _told_by(log: Log) -> tuple[Positions, tuple[int, ...]]:
-    """The positions, and the columns of the inertial unit."""
+def _positions_and_inertial(log: Log) -> tuple[Positions, tuple[int, ...]]:
+    """The positions, and the columns of the inertial unit.
+
+    Raises:
+        LogError: no usable positions, or neither inertial unit nor velocity.
+    """
     positions = Positions.of(NAME, log)
     found = positions.roles
     inertial = (*(found.gyro or ()), *(found.accelerometer or ()))
     if not inertial and found.velocity is None:
         raise LogError(
-            f"{log.name} has neither gyro, accelerometer nor velocity, from which {NAME} tells the way; "
+            f"{log.name} has neither gyro, accelerometer nor velocity, from which {NAME} estimates the displacement; "
             "name the columns in vehicle.toml, or take another method."
         )
     return positions, inertial
@@ -116,9 +120,11 @@ def _told_by(log: Log) -> tuple[Positions, tuple[int, ...]]:
 
 RECIPE = Recipe(
     name=NAME,
-    title="Displacement of the last second by an LSTM that does not see its positions, scaled largest training error",
-    source="after Min et al. 2021, section 2.2, for jams that repeat the last position",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    title="Displacement of the last second by an LSTM without that second's positions; limit: largest training error, "
+    "scaled",
+    source="after Min et al. 2021, section 2.2, for receivers that freeze at the last position (their jam fault)",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=build,
-    needs=_told_by,
+    needs=_positions_and_inertial,
 )

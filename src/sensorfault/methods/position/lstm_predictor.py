@@ -1,4 +1,4 @@
-"""Paper A's detector of transitional faults: a long short-term memory that predicts the position."""
+"""The LSTM position predictor with which Min et al. 2021 detect transitional faults."""
 
 from dataclasses import dataclass, field
 
@@ -17,7 +17,7 @@ NAME = "lstm-predictor"
 
 @dataclass(frozen=True)
 class Size:
-    """Rows of the window, cells of the layers, and how they are trained."""
+    """Rows of the window, cells of each layer, and the training plan."""
 
     length: int = LENGTH
     cells: tuple[int, ...] = (16, 16)
@@ -36,9 +36,10 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
 
 RECIPE = Recipe(
     name=NAME,
-    title="Position predicted by two LSTM layers from the 30 samples before, scaled largest training error",
+    title="Position predicted by two LSTM layers from the last 30 samples; limit: largest training error, scaled",
     source="Min et al. 2021, section 2.2, equations (12)-(15)",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=build,
     needs=lambda log: Positions.of(NAME, log),
 )

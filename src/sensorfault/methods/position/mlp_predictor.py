@@ -1,4 +1,4 @@
-"""Paper A's first comparator of the LSTM: a feed-forward network of the same shape."""
+"""A feed-forward network of the same size, which Min et al. 2021 compare with their LSTM."""
 
 from dataclasses import dataclass, field
 
@@ -17,7 +17,7 @@ NAME = "mlp-predictor"
 
 @dataclass(frozen=True)
 class Size:
-    """Rows of the window, units of the hidden layers, and how they are trained."""
+    """Rows of the window, units of each hidden layer, and the training plan."""
 
     length: int = LENGTH
     hidden: tuple[int, ...] = (16, 16)
@@ -37,9 +37,10 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
 
 RECIPE = Recipe(
     name=NAME,
-    title="Position predicted by two hidden layers from the 30 samples before, scaled largest training error",
-    source="Min et al. 2021, section 3.2: the comparator of the LSTM",
-    promise="none: the limit is the largest training error, scaled; fit measures the rate on data it did not see",
+    title="Position predicted by two hidden layers from the last 30 samples; limit: largest training error, scaled",
+    source="Min et al. 2021, section 3.2, compared there with the LSTM",
+    false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on held-out "
+    "data",
     build=build,
     needs=lambda log: Positions.of(NAME, log),
 )

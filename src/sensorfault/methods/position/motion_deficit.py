@@ -1,4 +1,4 @@
-"""Does the position go where the velocity says, and the velocity as the inertial unit says."""
+"""Does the position agree with the velocity, and the velocity with the inertial unit?"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -33,36 +33,36 @@ from sensorfault.training.session import Session
 from sensorfault.vehicles.car import LEAST_SPEED, Roles, moving, roles
 from sensorfault.vehicles.inertial import Inertial
 
-HORIZONS_S = 0.25, 1.0  # a jump, and a way; of a slow receiver a period of its fixes, and four
-JITTER = 0.9  # of a period there may be between two fixes
-SHORT_S = 0.3  # of the shortfall, at least: three fixes at 10 Hz
-HALF = 2.0  # ... and more than half of the way is missing
-FLOOR_M = 0.5  # less way missing is no jam worth an alarm
-AFRESH_S = 30.0  # a longer fault is forgotten: no lock-out
-MEMORY_S = 4.0  # of the inertial unit's own velocity
-LED_S = 8.0  # without a trusted velocity for longer it knows no better than the receiver
-REBUILD_S = 10.0  # a stand-in is believed for so long
-READMIT_S = 2.0  # a channel is taken at its own word again so long after the last accusation
-PER_HOUR = 1.0  # false alarms that the limits are extrapolated to, for all tests together
-MARGIN = 1.25  # on every limit, for what a drive of minutes has not shown
+HORIZONS_S = 0.25, 1.0  # a jump, and a displacement; for a slow receiver one period of its fixes, and four
+JITTER = 0.9  # two fixes may be as close as this share of a period
+SHORT_S = 0.3  # shortest time of the shortfall test: three fixes at 10 Hz [s]
+HALF = 2.0  # the shortfall test needs more than half of the displacement to be missing
+FLOOR_M = 0.5  # a smaller missing displacement is no frozen receiver worth an alarm [m]
+AFRESH_S = 30.0  # after a longer fault the comparison starts again, so that the receiver is not locked out [s]
+MEMORY_S = 4.0  # time constant of the velocity integrated from the inertial unit [s]
+LED_S = 8.0  # after this long without a trusted velocity the integrated one is no better than the receiver's [s]
+REBUILD_S = 10.0  # a stand-in is used for at most this long [s]
+READMIT_S = 2.0  # a channel is trusted again this long after its last alarm [s]
+PER_HOUR = 1.0  # false alarms an hour that the limits are extrapolated to, all tests together
+MARGIN = 1.25  # factor on every limit: a training drive of minutes does not show everything
 LEAST_MOVING_S = 20.0
-SLOTS = 15  # a reference every 0.08 s: at 10 Hz every fix is one, and none is older than it need be
+SLOTS = 15  # stored references, one every 0.08 s, so at 10 Hz every fix is stored
 
-Test = tuple[tuple[str, ...], Any, float]  # names of the tests, statistic, floor of their limits
+Test = tuple[tuple[str, ...], Any, float]  # names of the tests, statistic, smallest limit
 
 
 def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
-    """Fit on a healthy drive; with `repeats` False an exact repeat of the position counts for no more than any other.
+    """Fit on a healthy drive; `repeats`: also test for exactly repeated positions.
 
     Raises:
-        LogError: no position, no velocity, a drive that never moves, or one at a pole.
+        LogError: no position, no velocity, a car that hardly moves, or a drive at a pole.
     """
     found = _checked(log)
     unit, reason = _unit(log, found)
-    parts, answers, tests = _parts(log, found, unit, repeats)
+    parts, judged, tests = _parts(log, found, unit, repeats)
     channels, count = len(log.channels), sum(len(names) for names, _, _ in tests)
     uncalibrated = Monitor(
-        residual=Several(parts, jnp.stack(answers)),
+        residual=Several(parts, jnp.stack(judged)),
         branches=tuple(
             Branch(test, Fixed(jnp.full(len(names), jnp.inf)), memory_s=_presumes_s(test)) for names, test, _ in tests
         ),
@@ -81,16 +81,16 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         uncalibrated,
         [jnp.asarray(limit) for limit in limits],
     )
-    watched = np.asarray(jnp.stack(answers).any(axis=0))
-    result = {
+    watched = np.asarray(jnp.stack(judged).any(axis=0))
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": {
-            c.path: "no part of the comparison" for c, w in zip(log.channels, watched, strict=True) if not w
+            c.path: "not part of the comparison" for c, w in zip(log.channels, watched, strict=True) if not w
         },
     }
     if reason:
-        result["cannot"] = {"velocity against the inertial unit": reason}
+        summary["cannot"] = {"velocity against the inertial unit": reason}
     return Model(
         method=name,
         monitor=monitor,
@@ -100,12 +100,16 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         watched=tuple(watched.tolist()),
         tick_s=log.period_s,
         sigma=tuple(_sigma(parts, found, channels).tolist()),
-        summary=result,
+        summary=summary,
     )
 
 
 def _checked(log: Log) -> Roles:
-    """The columns compared, or what is missing."""
+    """The columns to compare.
+
+    Raises:
+        LogError: a column is missing, the drive is at a pole, or the car hardly moves.
+    """
     found = roles(log)
     if found.position is None or found.velocity is None:
         lacks = "position (latitude and longitude)" if found.position is None else "velocity over ground"
@@ -115,21 +119,20 @@ def _checked(log: Log) -> Roles:
         )
     latitude = log.value[:, found.position[0]]
     if not (np.abs(latitude[np.isfinite(latitude)]) <= FARTHEST).any():
-        raise LogError(
-            f"{log.name} lies within 0.1 degrees of a pole, where east has no meaning; motion-deficit cannot judge it."
-        )
+        raise LogError(f"{log.name} lies within 0.1 degrees of a pole, where east has no meaning; take another method.")
     moves = moving(log, found)
     seconds = len(moves) * float(np.median(np.diff(moves))) if len(moves) > 2 else 0.0
     if seconds < LEAST_MOVING_S:
         raise LogError(
-            f"{log.name} moves for {seconds:.0f} s, motion-deficit needs {LEAST_MOVING_S:g} s above {LEAST_SPEED:g} "
-            "m/s to learn what is healthy; give a drive that moves."
+            f"{log.name} moves for {seconds:.0f} s, but motion-deficit needs {LEAST_MOVING_S:g} s above "
+            f"{LEAST_SPEED:g} "
+            "m/s to learn what is healthy; give a longer drive."
         )
     return found
 
 
 def _unit(log: Log, found: Roles) -> tuple[Inertial | None, str]:
-    """The inertial unit as it is mounted, or None and why not."""
+    """The inertial unit with its mounting, or None and the reason."""
     try:
         return inertial(fit_mounting(log, found), found), ""
     except LogError as error:
@@ -139,7 +142,7 @@ def _unit(log: Log, found: Roles) -> tuple[Inertial | None, str]:
 def _parts(
     log: Log, found: Roles, unit: Inertial | None, repeats: bool
 ) -> tuple[tuple[Any, ...], list[Bool[Array, " C"]], list[Test]]:
-    """The residual generators, whom each answers for, and the tests made of them."""
+    """The residual generators, the channels that each one judges, and their tests."""
     assert found.position is not None
     assert found.velocity is not None
     channels = len(log.channels)
@@ -164,7 +167,7 @@ def _parts(
         (("shortfall",), SelectResidual(Shortfall(short_s, jnp.asarray(HALF), place, found.position), 0), FLOOR_M),
     ]
     if repeats:
-        tests.append((("standing",), SelectResidual(StuckPosition(place, found.position), 0), FLOOR_M))
+        tests.append((("stuck position",), SelectResidual(StuckPosition(place, found.position), 0), FLOOR_M))
     parts: tuple[Any, ...] = (fit_deficit(deficit, log),)
     if unit is None:
         return parts, [place], tests
@@ -195,7 +198,7 @@ def _named(log: Log, names: tuple[str, ...], of: SelectResidual) -> Iterator[tup
 
 
 def _presumes_s(of: SelectResidual) -> float:
-    """After a slide a velocity that differs from the inertial unit's is no sensor's fault, until it leads that anew."""
+    """After a slide, a velocity unlike the inertial unit's is no sensor fault until the two are aligned again."""
     return LED_S if isinstance(of.statistic, Slippage) else 0.0
 
 
@@ -204,7 +207,7 @@ def _mask(channels: int, *columns: int) -> Bool[Array, " C"]:
 
 
 def _sigma(parts: tuple[Any, ...], found: Roles, channels: int) -> np.ndarray:
-    """Standard deviation of each healthy residual [SI]; a second after the reference, at 10 m/s."""
+    """Standard deviation of each healthy residual [SI], one second after the reference, at 10 m/s."""
     assert found.position is not None
     assert found.velocity is not None
     sigma = np.ones(channels)
@@ -217,16 +220,18 @@ def _sigma(parts: tuple[Any, ...], found: Roles, channels: int) -> np.ndarray:
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:
-    session.tell("learning how far position and velocity disagree when healthy")
+    session.progress("measuring how far position and velocity differ when healthy")
     return motion_deficit(RECIPE.name, log)
 
 
 RECIPE = Recipe(
     name="motion-deficit",
-    title="Way that the velocity says minus displacement of the position; velocity against the inertial unit",
-    source="EXPERIMENTS A2; the fault of Min et al. 2021, section 2.2 (jams), found without a network",
-    promise="one false alarm an hour for all its tests together, extrapolated from the tail of the training drive, and "
-    "a quarter on top of each limit",
+    title="Integrated velocity minus displacement of the position; velocity against the inertial unit",
+    source="this project's own study (`sensorfault reproduce min2021`), for the jam faults of Min et al. 2021, section "
+    "2.2",
+    false_alarm_rate="one false alarm an hour over all its tests, extrapolated from the tail of the training drive; "
+    "each "
+    "limit is 25 % higher than that",
     build=_build,
     needs=_checked,
 )

@@ -1,4 +1,4 @@
-"""A residual of the position made into a monitor: what the predictors and their baselines share."""
+"""The monitor around a residual of the position, shared by the predictors and their baselines."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,30 +26,30 @@ from sensorfault.training.prediction import Inputs, prediction_windows
 from sensorfault.training.windows import Windows
 from sensorfault.vehicles.car import Roles, roles
 
-LENGTH = 30  # s of Min et al. 2021: rows of the window
-REBUILD_S = 3.0  # a stand-in is believed for so long
-READMIT_S = 0.5  # a channel is taken at its own word again so long after the last accusation
+LENGTH = 30  # rows of the window; s in Min et al. 2021
+REBUILD_S = 3.0  # a stand-in is used for at most this long [s]
+READMIT_S = 0.5  # a channel is trusted again this long after its last alarm [s]
 GAP = 5.5  # ticks without a row that break a window
 LEAST_FIXES = 50
-LEAST_WAY = 1e-6  # a drive that keeps within this angle never moved [rad], some 6 m
+LEAST_DISTANCE = 1e-6  # a drive that stays within this angle never moved [rad], about 6 m
 
 
 @dataclass(frozen=True)
 class Positions:
-    """A healthy log as a predictor of the position sees it."""
+    """A healthy log with the columns that a predictor of the position uses."""
 
     log: Log
     roles: Roles
     columns: tuple[int, int]  # latitude, longitude
     half: Float[np.ndarray, "2"]  # half of their training range [rad]
-    turning: tuple[int, ...]  # columns that are angles without an end
+    turning: tuple[int, ...]  # columns that are angles which wrap around
 
     @classmethod
     def of(cls, name: str, log: Log) -> "Positions":
-        """For the method of that name.
+        """For the method called `name`.
 
         Raises:
-            LogError: no positions, too few of them, or a drive that never moves.
+            LogError: no positions, too few positions, or a car that never moves.
         """
         found = roles(log)
         if found.position is None:
@@ -60,22 +60,22 @@ class Positions:
         latitude, longitude = found.position
         new = log.fresh[:, found.position].all(axis=1) & np.isfinite(log.value[:, found.position]).all(axis=1)
         if new.sum() < LEAST_FIXES:
-            raise LogError(f"{log.name} has {new.sum()} positions, {name} needs {LEAST_FIXES}; give it more data.")
+            raise LogError(f"{log.name} has {new.sum()} positions, but {name} needs {LEAST_FIXES}; give it more data.")
         inputs = Inputs.of(log, found.position, 2, (longitude,))
-        if inputs.half.max() < LEAST_WAY / 2:
-            raise LogError(f"{log.name} never moves, which leaves {name} nothing to predict; give a drive that does.")
+        if inputs.half.max() < LEAST_DISTANCE / 2:
+            raise LogError(f"{log.name} never moves, so {name} has nothing to predict; give a drive that moves.")
         return cls(log, found, (latitude, longitude), inputs.half, (longitude,))
 
     @property
     def stale_s(self) -> Float[np.ndarray, " C"]:
-        """How long a channel may be silent before what is remembered of it is void [s]."""
+        """After a silence longer than this, the last value of a channel is no longer used [s]."""
         period = {sensor.name: sensor.period_s for sensor in self.log.sensors}
         own = np.array([period[channel.sensor] for channel in self.log.channels])
         return np.maximum(MISSED * own, GAP * self.log.period_s) + self.log.period_s / 2
 
     @property
     def inputs(self) -> tuple[int, ...]:
-        """V = (lat, lon, ω, a): the columns that a network sees, as far as the log has them."""
+        """V = (lat, lon, ω, a): the input columns of a network, as far as the log has them."""
         return (*self.columns, *(self.roles.gyro or ()), *(self.roles.accelerometer or ()))
 
     def mark(self, columns: tuple[int, ...]) -> Bool[np.ndarray, " C"]:
@@ -85,10 +85,10 @@ class Positions:
 
 
 def from_windows(name: str, log: Log, length: int, fit: Callable[[Windows], Linear | Mlp | Lstm]) -> Model:
-    """The monitor of a network that predicts the position from the `length` rows before, fitted on a healthy log.
+    """The model of a network that predicts the position from the last `length` rows, fitted on a healthy log.
 
     Raises:
-        LogError: a log without positions, with too few of them, or that never moves.
+        LogError: no positions, too few positions, or a car that never moves.
     """
     positions = Positions.of(name, log)
     inputs = Inputs.of(log, positions.inputs, 2, positions.turning)
@@ -113,12 +113,13 @@ def limited(
     name: str,
     positions: Positions,
     residual: Prediction | Extrapolation | Displacement,
-    result: dict[str, Any],
+    extra: dict[str, Any],
     unit: Float[np.ndarray, "2"] | None = None,
 ) -> Model:
-    """The model: covariance and largest error from a replay with the limit off.
+    """The model, with covariance and largest error from a replay with the limit off.
 
-    Errors are counted in `unit` [rad], of latitude and longitude; by default in halves of the training range.
+    Errors of latitude and longitude are divided by `unit` [rad]; by default half the training range. `extra` goes into
+    the summary.
 
     Raises:
         LogError: too few positions that can be tested.
@@ -140,13 +141,13 @@ def limited(
     tested = np.asarray(tape.valid)[:, columns].all(axis=1)
     if tested.sum() < LEAST_FIXES:
         raise LogError(
-            f"{log.name} has {tested.sum()} positions with an unbroken window before them, {name} needs {LEAST_FIXES}; "
+            f"{log.name} has {tested.sum()} positions after a window without gaps, but {name} needs {LEAST_FIXES}; "
             "give it more data, or data with fewer gaps."
         )
     cov = np.eye(channels)
     at = np.array(columns)
     cov[at[:, None], at] = np.cov(np.asarray(tape.residual)[tested][:, columns].T)
-    # (10) max(err), of the 2-norm (13)-(15) over the training data
+    # (10) max(err) of the 2-norm (13)-(15), over the training data
     largest = np.nanmax(tape.scores[0], axis=0)
     monitor = eqx.tree_at(
         lambda m: (m.residual.cov, m.branches[0].threshold.largest),
@@ -160,7 +161,7 @@ def limited(
         "training_s": log.duration_s,
         "rows": int(tested.sum()),
         "not_watched": reasons,
-        **result,
+        **extra,
     }
     sigma = tuple(np.sqrt(np.diag(cov)).tolist())
     tests = (("norm", None),)

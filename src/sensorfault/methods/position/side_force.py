@@ -1,4 +1,4 @@
-"""Does the car go where it points: the side force that it feels against the one that its turning asks for."""
+"""Does the car slide? The measured side force against the one that speed and turn rate require."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -19,16 +19,16 @@ from sensorfault.training.session import Session
 from sensorfault.training.side_force import fit_side_force
 from sensorfault.vehicles.car import roles
 
-CONSTANT_S = 0.3  # of the low pass: longer than a bump, shorter than the edge of a slide
-# After a fault of a sensor nothing is said for so long [s]: an offset of the yaw rate that lasts, once it is taken for
-# the channel's own word again, is a slide as long as it lasts.
+CONSTANT_S = 0.3  # time constant of the low pass: longer than a bump, shorter than the onset of a slide [s]
+# No verdict for this long after a sensor fault [s]: a lasting offset of the yaw rate looks like a slide once the
+# channel is trusted again.
 MEMORY_S = 20.0
-PER_HOUR = 1.0  # false alarms
-MARGIN = 1.25  # on the limit, for what a drive of minutes has not shown
+PER_HOUR = 1.0  # false alarms an hour
+MARGIN = 1.25  # factor on the limit: a training drive of minutes does not show everything
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:
-    session.tell("learning the side force of healthy turns")
+    session.progress("measuring the side force in healthy turns")
     residual = fit_side_force(log, roles(log))
     columns = (*residual.unit.gyro, *residual.unit.accelerometer, *residual.velocity)
     compared = np.isin(np.arange(len(log.channels)), columns)
@@ -42,11 +42,11 @@ def _build(log: Log, seed: int, session: Session) -> Model:
         owner=owners(log.channels, log.sensors),
     )
     limit = MARGIN * tail_limit(open_loop_scores(uncalibrated, log)[0], log.period_s, PER_HOUR)
-    result = {
+    summary = {
         "training_log": log.name,
         "training_s": log.duration_s,
         "not_watched": {
-            c.path: "no part of the comparison" for c, mine in zip(log.channels, compared, strict=True) if not mine
+            c.path: "not part of the comparison" for c, mine in zip(log.channels, compared, strict=True) if not mine
         },
     }
     return Model(
@@ -58,17 +58,19 @@ def _build(log: Log, seed: int, session: Session) -> Model:
         watched=tuple(compared.tolist()),
         tick_s=log.period_s,
         sigma=(1.0,) * len(log.channels),
-        summary=result,
+        summary=summary,
     )
 
 
 RECIPE = Recipe(
     name="side-force",
-    title="Side force felt minus speed times turn rate: a car that slips, spins or is carried; judges the motion, "
-    "given healthy sensors",
-    source="the bicycle of Min et al. 2021, equation (16), which does not slip; the comparison that stability "
-    "controllers make (van Zanten 2000)",
-    promise="one false alarm an hour, extrapolated from the tail of the training drive, and a quarter on top",
+    title="Measured side force minus speed times turn rate: a car that slides, spins or is transported; tests the "
+    "motion, "
+    "assumes healthy sensors",
+    source="the bicycle of Min et al. 2021, equation (16), which does not slide; the comparison made by stability "
+    "controllers (van Zanten 2000)",
+    false_alarm_rate="one false alarm an hour, extrapolated from the tail of the training drive; the limit is 25 % "
+    "higher",
     build=_build,
     needs=lambda log: fit_mounting(log, roles(log)),
 )

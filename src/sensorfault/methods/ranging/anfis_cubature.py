@@ -1,4 +1,4 @@
-"""How far off is each range, as fuzzy rules foretell it from what an adaptive cubature filter makes of it."""
+"""Fuzzy rules estimate the error of each range from its innovation in an adaptive cubature filter."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -39,14 +39,14 @@ def anfis(
     rmse: bool,
     setting: Setting = RULES,
 ) -> Model:
-    """With rules learned from these ranges, one set a leader. T2 is 3 RMSE of the training, else that of an anomaly."""
+    """The model with one set of rules for each leader. `rmse`: the limit is T2, 3 RMSE of the training, else T1."""
     fits = [fit_anfis(*of_leader, setting) for of_leader in labelled]
     limits = np.array([3 * fit.rmse for fit in fits]) if rmse else np.full(len(fits), WRONG * filter.sigma_m)
     columns = tuple(leader.range for leader in found.leaders)
     test = FuzzyInference(tuple(fit.model for fit in fits), widest(labelled), columns)
     calibrated = monitor(log, cubature(log, found, filter), Branch(test, on_ranges(log, found, limits)))
-    result = {"rmse_m": [fit.rmse for fit in fits], "limits_m": limits.tolist()}
-    return model(name, log, found, calibrated, ("foretold error",), filter, result)
+    summary = {"rmse_m": [fit.rmse for fit in fits], "limits_m": limits.tolist()}
+    return model(name, log, found, calibrated, ("predicted error",), filter, summary)
 
 
 def _recipe(rmse: bool) -> Recipe:
@@ -54,17 +54,17 @@ def _recipe(rmse: bool) -> Recipe:
 
     def build(log: Log, seed: int, session: Session) -> Model:
         found = followed(name, log)
-        session.tell("fitting the noise of ranges and dead reckoning")
+        session.progress("fitting the noise of ranges and dead reckoning")
         own = fitted(log, found, Filter(growth=GROWTH))
-        session.tell("learning rules")
+        session.progress("learning rules")
         return anfis(name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)), rmse)
 
-    limit = "3 times the training's RMSE" if rmse else "3 standard deviations of a range, 9 m of 3 m"
+    limit = "3 times the RMSE of the training" if rmse else "3 standard deviations of a range, 9 m for 3 m"
     return Recipe(
         name=name,
-        title=f"ANFIS of an adaptive cubature filter's innovation, its distance and R*; limit: {limit}",
-        source="Xu et al. 2023, (1)-(35)" if rmse else "Xu et al. 2023 with its limit T1 in the place of T2",
-        promise="none",
+        title=f"ANFIS on innovation, Mahalanobis distance and R* of an adaptive cubature filter; limit: {limit}",
+        source="Xu et al. 2023, (1)-(35)" if rmse else "Xu et al. 2023 with limit T1 in place of T2",
+        false_alarm_rate="not designed",
         build=build,
         needs=partial(followed, name),
     )

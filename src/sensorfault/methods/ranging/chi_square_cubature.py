@@ -1,4 +1,4 @@
-"""Is each range where dead reckoning and the other leaders put it: the innovation's χ² test, at .05 and .01."""
+"""Does each range agree with dead reckoning and the other leaders? χ² test of the innovation, at 0.05 and 0.01."""
 
 from functools import partial
 from statistics import NormalDist
@@ -24,12 +24,12 @@ from sensorfault.vehicles.underwater import FollowerRoles
 
 
 def limit(far: float) -> float:
-    """√χ²(1 - far) with one degree of freedom."""
+    """√χ²(1 - far) with one degree of freedom; `far`: false alarm rate."""
     return NormalDist().inv_cdf(1 - far / 2)
 
 
 def gate(log: Log, found: FollowerRoles, residual: Cubature, far: float) -> Monitor:
-    """The filter behind the test."""
+    """The filter with the test."""
     return monitor(log, residual, Branch(Normalised(), on_ranges(log, found, limit(far))))
 
 
@@ -37,7 +37,7 @@ def chi_square(name: str, log: Log, far: float, filter: Filter | None = None, ad
     """Fit the noises on a healthy log, unless the filter is given.
 
     Raises:
-        LogError: not a follower's log.
+        LogError: the log is not that of a follower.
     """
     found = followed(name, log)
     own = filter or fitted(log, found, Filter(adaptive=adaptive, growth=GROWTH))
@@ -49,14 +49,14 @@ def _recipe(far: float, adaptive: bool) -> Recipe:
     name = f"chi-square-{'ackf' if adaptive else 'ckf'}-{f'{far:.2f}'[2:]}"
 
     def build(log: Log, seed: int, session: Session) -> Model:
-        session.tell("fitting the noise of ranges and dead reckoning")
+        session.progress("fitting the noise of ranges and dead reckoning")
         return chi_square(name, log, far, adaptive=adaptive)
 
     return Recipe(
         name=name,
-        title=f"{'Adaptive c' if adaptive else 'C'}ubature Kalman filter of a follower, χ² of each range's innovation",
-        source="Xu et al. 2023, (1)-(20)" + (", (30), (31)" if adaptive else "") + ", and the test it compares with",
-        promise=f"{far:g} of the healthy ranges, if the noise is Gaussian and the filter right about it",
+        title=f"{'Adaptive c' if adaptive else 'C'}ubature Kalman filter of a follower; χ² of each range's innovation",
+        source="Xu et al. 2023, (1)-(20)" + (", (30), (31)" if adaptive else "") + ", the test compared there",
+        false_alarm_rate=f"{far:g} of the healthy ranges, if the noise is Gaussian and as large as the filter assumes",
         build=build,
         needs=partial(followed, name),
     )

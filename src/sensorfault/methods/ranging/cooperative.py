@@ -1,4 +1,4 @@
-"""Which of a follower's leaders lies: the recipe we stand for."""
+"""Which of a follower's leaders sends wrong ranges? The recommended recipe."""
 
 from functools import partial
 
@@ -29,48 +29,50 @@ from sensorfault.training.session import Session
 from sensorfault.vehicles.underwater import FollowerRoles
 
 FALSE_ALARMS = 0.01  # of the healthy ranges
-LEAST_RUN = 5.0  # repeats that are no jam yet
-REPEATED = 1e6
+LEAST_RUN = 5.0  # a shorter run of repeats is never called frozen
+REPEATED = 1e6  # factor on R for an exact repeat: the filter ignores it
 
 
 def cooperative(name: str, log: Log, filter: Filter | None = None) -> Model:
     """Fit the noises on a healthy log, unless the filter is given.
 
     Raises:
-        LogError: not a follower's log.
+        LogError: the log is not that of a follower.
     """
     found = followed(name, log)
     own = filter or fitted(log, found, Filter(growth=GROWTH, repeated=REPEATED))
-    received, longest = gates(log, found, cubature(log, found, own))
-    result = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
-    return model(name, log, found, received, ("chi-square", "repeats"), own, result)
+    calibrated, longest = gates(log, found, cubature(log, found, own))
+    summary = {"false_alarms": FALSE_ALARMS, "repeats": longest.tolist()}
+    return model(name, log, found, calibrated, ("chi-square", "repeats"), own, summary)
 
 
 def gates(log: Log, found: FollowerRoles, residual: Cubature) -> tuple[Monitor, Float[np.ndarray, " L"]]:
-    """The filter behind both tests, and the longest run of repeats that each leader of this healthy log is allowed."""
+    """The filter with both tests, and the longest allowed run of repeats of each leader, from this healthy log."""
     repeats = Repeats(len(log.channels))
     runs = open_loop_scores(monitor(log, residual, Branch(repeats, on_ranges(log, found, np.inf))), log)[0]
     columns = [leader.range for leader in found.leaders]
     longest = np.maximum(repeat_limit(runs, log.period_s)[columns], LEAST_RUN)
-    received = monitor(
+    calibrated = monitor(
         log,
         residual,
         Branch(Normalised(), on_ranges(log, found, limit(FALSE_ALARMS))),
         Branch(repeats, on_ranges(log, found, longest), certain=True),
     )
-    return received, longest
+    return calibrated, longest
 
 
 def _build(log: Log, seed: int, session: Session) -> Model:
-    session.tell("fitting the noise of ranges and dead reckoning")
+    session.progress("fitting the noise of ranges and dead reckoning")
     return cooperative(RECIPE.name, log)
 
 
 RECIPE = Recipe(
     name="cooperative",
-    title="Adaptive cubature filter of a follower that takes no exact repeat for news: χ² of each range, and repeats",
-    source="Xu et al. 2023, (1)-(20), (30), (31), with noises fitted to the log; no rules, which gain nothing on it",
-    promise="0.01 of the healthy ranges, if the noise is Gaussian",
+    title="Adaptive cubature filter of a follower that ignores exactly repeated ranges; χ² of each range, and exact "
+    "repeats",
+    source="Xu et al. 2023, (1)-(20), (30), (31), with noise fitted to the log and without the rules, which do not "
+    "help",
+    false_alarm_rate="0.01 of the healthy ranges, if the noise is Gaussian",
     build=_build,
     needs=partial(followed, "cooperative"),
 )

@@ -1,4 +1,4 @@
-"""A cubature filter's innovations under two thresholds, and a network that decides between them."""
+"""Two thresholds on the innovations of a cubature filter, and a network that decides between them."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -31,7 +31,7 @@ from sensorfault.training.session import Session
 from sensorfault.training.windows import Windows
 from sensorfault.vehicles.underwater import FollowerRoles
 
-LOW, HIGH = 0.3, 0.01  # false alarms of the two thresholds by themselves
+LOW, HIGH = 0.3, 0.01  # false alarm rates of the two thresholds on their own
 WINDOW, HIDDEN = 4, (10,)
 PLAN = Plan(epochs=300, batch=32, rate=0.01, patience=40)
 
@@ -39,7 +39,7 @@ PLAN = Plan(epochs=300, batch=32, rate=0.01, patience=40)
 def double_threshold(
     name: str, log: Log, found: FollowerRoles, filter: Filter, of: Sequence[Lesson], seed: int = 0
 ) -> Model:
-    """With a network learned from these ranges, one for all leaders.
+    """The model with a network learned from these ranges, one for all leaders.
 
     Raises:
         LogError: too few ranges to learn from.
@@ -49,7 +49,8 @@ def double_threshold(
     windows = _windows(runs, WRONG * filter.sigma_m)
     if len(windows.first) < 3 * LEAST:
         raise LogError(
-            f"{log.name} has {len(windows.first)} ranges to learn from, {name} needs more; give a longer log."
+            f"{log.name} has {len(windows.first)} ranges to learn from, but {name} needs {3 * LEAST}; give a longer "
+            "log."
         )
     network = train(new_mlp(seed, WINDOW, 1, HIDDEN, "sigmoid"), windows, PLAN, seed).net
     test = DoubleThreshold(
@@ -65,7 +66,7 @@ def double_threshold(
 
 
 def _windows(runs: Sequence[Run], wrong_m: float) -> Windows:
-    """Windows of normalised innovations within each run; the target is the size of the newest error over `wrong_m`."""
+    """Windows of normalised innovations within each run; target: size of the newest error divided by `wrong_m`."""
     rows, first, target, begin = [], [], [], 0
     for run in runs:
         value, variance, _ = run.tape
@@ -79,17 +80,18 @@ def _windows(runs: Sequence[Run], wrong_m: float) -> Windows:
 
 def _build(log: Log, seed: int, session: Session) -> Model:
     found = followed(RECIPE.name, log)
-    session.tell("fitting the noise of ranges and dead reckoning")
+    session.progress("fitting the noise of ranges and dead reckoning")
     own = fitted(log, found, Filter(adaptive=False, growth=GROWTH))
-    session.tell("training the network")
+    session.progress("training the network")
     return double_threshold(RECIPE.name, log, found, own, lessons(log, found, own, seed), seed)
 
 
 RECIPE = Recipe(
     name="double-threshold",
-    title="Cubature Kalman filter of a follower, χ² at .01, or at .3 if a network of the last four innovations agrees",
-    source="the test of Zhao et al. 2020 that Xu et al. 2023 compare with, in our reading",
-    promise="none",
+    title="Cubature Kalman filter of a follower; χ² at 0.01, or at 0.3 if a network on the last four innovations "
+    "agrees",
+    source="the test of Zhao et al. 2020 as described by Xu et al. 2023; details are our interpretation",
+    false_alarm_rate="not designed",
     build=_build,
     needs=partial(followed, "double-threshold"),
 )

@@ -1,4 +1,4 @@
-"""Is each range further off than it may be: logistic regression, the plain twin of anfis-cubature."""
+"""Is the error of each range too large? Logistic regression on the features of anfis-cubature."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -27,7 +27,7 @@ from sensorfault.vehicles.underwater import FollowerRoles
 
 
 def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, labelled: Sequence[Labelled]) -> Model:
-    """With odds learned from these ranges, one regression a leader."""
+    """The model with odds learned from these ranges, one regression for each leader."""
     wrong_m = WRONG * filter.sigma_m
     models = tuple(fit_logistic(features, size > wrong_m) for features, size in labelled)
     test = LogisticRegression(models, widest(labelled), tuple(leader.range for leader in found.leaders))
@@ -37,17 +37,17 @@ def logistic(name: str, log: Log, found: FollowerRoles, filter: Filter, labelled
 
 def _build(log: Log, seed: int, session: Session) -> Model:
     found = followed(RECIPE.name, log)
-    session.tell("fitting the noise of ranges and dead reckoning")
+    session.progress("fitting the noise of ranges and dead reckoning")
     own = fitted(log, found, Filter(growth=GROWTH))
-    session.tell("learning odds")
+    session.progress("fitting the regression")
     return logistic(RECIPE.name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)))
 
 
 RECIPE = Recipe(
     name="logistic-cubature",
-    title="Logistic regression of an adaptive cubature filter's innovation, its distance and R*",
+    title="Logistic regression on innovation, Mahalanobis distance and R* of an adaptive cubature filter",
     source="the features of Xu et al. 2023, (28)-(31), without fuzzy rules",
-    promise="none",
+    false_alarm_rate="not designed",
     build=_build,
     needs=partial(followed, "logistic-cubature"),
 )

@@ -1,4 +1,4 @@
-"""What the methods share that judge a follower's ranges: the filter and the monitor around it."""
+"""Shared by the methods that test a follower's ranges: the filter and the monitor around it."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,18 +22,18 @@ from sensorfault.training.ranges import submerged
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, roles
 
 START_M = 2.0  # standard deviation of the first fix, north and east [m]
-LEAST = 40  # ranges of each leader
-GROWTH = 0.5  # of the recipes; none as printed
-WRONG = 3.0  # a range further off than so many of its standard deviations is anomalous: 9 m of 3 m
+LEAST = 40  # ranges needed of each leader
+GROWTH = 0.5  # used by the recipes; the paper has none
+WRONG = 3.0  # an error above so many standard deviations of a range is an anomaly: 9 m for 3 m
 
 
 @dataclass(frozen=True)
 class Filter:
-    """What the filter takes for granted.
+    """Setting of the filter.
 
-    `q`: variance that a second of dead reckoning adds [m²/s], 1 as printed. `sigma_m`: standard deviation of a range
-    [m]. `adaptive`: R* for R. `growth`: share by which each refused range makes q larger. `repeated`: how many times R
-    is that of an exact repeat.
+    `q`: variance that a second of dead reckoning adds [m²/s], 1 in the paper. `sigma_m`: standard deviation of a range
+    [m]. `adaptive`: R* in place of R. `growth`: share by which each rejected range increases q. `repeated`: factor on R
+    for an exactly repeated range.
     """
 
     q: float = 1.0
@@ -44,29 +44,29 @@ class Filter:
 
 
 def followed(name: str, log: Log) -> FollowerRoles:
-    """What the log says of a follower.
+    """The columns of a follower in this log.
 
     Raises:
-        LogError: no leader, no position to begin at, or too few ranges.
+        LogError: no leader, no initial position, or too few ranges.
     """
     found = roles(log)
     if not found.leaders:
         raise LogError(
-            f"{log.name} has no sensor with a range [m] and a position, {name} needs one a leader; name the columns in "
-            "vehicle.toml, or take another method."
+            f"{log.name} has no sensor with a range [m] and a position, but {name} needs one for each leader; name the "
+            "columns in vehicle.toml, or take another method."
         )
     if not found.position or not log.fresh[:, list(found.position)].all(axis=1).any():
         raise LogError(
-            f"{log.name} has no position of a sensor without a range, {name} begins at one; give a log with a fix."
+            f"{log.name} has no position of the vehicle itself, but {name} starts from one; give a log with a fix."
         )
     few = min(int(log.fresh[:, leader.range].sum()) for leader in found.leaders)
     if few < LEAST:
-        raise LogError(f"{log.name} has a leader with {few} ranges, {name} needs {LEAST}; give it a longer log.")
+        raise LogError(f"{log.name} has a leader with {few} ranges, but {name} needs {LEAST}; give a longer log.")
     return found
 
 
 def cubature(log: Log, found: FollowerRoles, filter: Filter) -> Cubature:
-    """The filter of this log's follower."""
+    """The filter for the follower of this log."""
     return _cubature(log, found, filter, jnp.asarray(filter.q), jnp.asarray(filter.sigma_m))
 
 
@@ -87,8 +87,8 @@ def _cubature(
 
 
 def monitor(log: Log, residual: Cubature, *branches: Branch) -> Monitor:
-    """What is over a limit has gain 0; without branches, with the limits off."""
-    silent = Branch(Normalised(), Fixed(jnp.inf * jnp.ones(len(log.channels))))  # not full: that is weakly typed
+    """A range over its limit has gain 0; no branches: limits off."""
+    silent = Branch(Normalised(), Fixed(jnp.inf * jnp.ones(len(log.channels))))  # not jnp.full, which is weakly typed
     return Monitor(
         residual=residual,
         branches=branches or (silent,),
@@ -100,14 +100,14 @@ def monitor(log: Log, residual: Cubature, *branches: Branch) -> Monitor:
 
 
 def on_ranges(log: Log, found: FollowerRoles, limits: float | Float[np.ndarray, " L"]) -> Fixed:
-    """These limits on the ranges, one or one a leader, and none on the other channels."""
+    """These limits on the ranges, one for all or one for each leader, and none on the other channels."""
     limit = np.full(len(log.channels), np.inf)
     limit[[leader.range for leader in found.leaders]] = limits
     return Fixed(jnp.asarray(limit))
 
 
 def fitted(log: Log, found: FollowerRoles, filter: Filter) -> Filter:
-    """The filter with the noise that makes the innovations of this log likeliest; exact repeats say nothing of it."""
+    """The filter with the maximum-likelihood noise of this log's innovations; exact repeats are ignored."""
     plain = replace(filter, adaptive=True, growth=0.0, repeated=1e6)
     under = submerged(log, found.position)
     q, sigma_m = likeliest(lambda q, sigma: monitor(log, _cubature(log, found, plain, q, sigma)), under)
@@ -121,16 +121,16 @@ def model(
     own: Monitor,
     tests: tuple[str, ...],
     filter: Filter,
-    result: dict[str, Any],
+    extra: dict[str, Any],
 ) -> Model:
-    """`tests` names what each branch tests of each channel; `sigma` is that of the healthy innovations."""
+    """`tests`: name of each branch's test, one for each channel; `extra` goes into the summary."""
     ranges = [leader.range for leader in found.leaders]
     uncalibrated = monitor(log, own.residual)  # type: ignore[arg-type]
     tape = replay_log(uncalibrated, submerged(log, found.position))
     sigma = np.ones(len(log.channels))
     for column in ranges:
         seen = tape.residual[tape.valid[:, column], column]
-        sigma[column] = 1.4826 * np.median(np.abs(seen))  # robust: the log may have its wild ones
+        sigma[column] = 1.4826 * np.median(np.abs(seen))  # robust against outliers in the log
     paths = [channel.path for channel in log.channels]
     mine = np.isin(np.arange(len(paths)), ranges)
     summary = {
@@ -138,7 +138,7 @@ def model(
         "training_s": log.duration_s,
         "process_noise_m2_s": filter.q,
         "range_sigma_m": filter.sigma_m,
-        **result,
+        **extra,
         "not_watched": {path: "not measured" for path, m in zip(paths, mine, strict=True) if not m},
     }
     return Model(

@@ -1,4 +1,4 @@
-"""What there is to learn of a follower's ranges: those whose error is known, as the filter sees them."""
+"""Training data from a follower's ranges: the filter's features of ranges whose error is known."""
 
 from collections.abc import Sequence
 
@@ -12,14 +12,14 @@ from sensorfault.training.labelled import Labelled
 from sensorfault.training.ranges import Lesson, labelled, spoiled, submerged, surfaced
 from sensorfault.vehicles.underwater import Follower, FollowerRoles
 
-COPIES = 4  # of the log, each with other faults, to learn from
-WIDER = 5.0  # times the usual variance of an innovation: beyond it nothing was learned
+COPIES = 4  # copies of the log for training, each with other faults
+WIDER = 5.0  # times the usual variance of an innovation: the training data do not cover more
 
 
 def lessons(log: Log, found: FollowerRoles, filter: Filter, seed: int) -> list[Lesson]:
-    """The log as it is and copies of it with faults, and how far off each range is.
+    """The log as it is and copies with injected faults, with the error of each range.
 
-    The errors are those that the log's fixes show; ranges without a fix are taken for right before faults come in.
+    The errors come from the fixes in the log; a range without a fix is assumed correct before injection.
     """
     vehicle: Follower = cubature(log, found, filter).vehicle
     known = Lesson(submerged(log, found.position), np.nan_to_num(surfaced(log, vehicle)))
@@ -33,6 +33,6 @@ def learned(log: Log, found: FollowerRoles, filter: Filter, of: Sequence[Lesson]
 
 
 def widest(of: Sequence[Labelled]) -> Float[Array, " L"]:
-    """Up to which variance of a leader's innovations something was learned of them, and a bit more [m²]."""
+    """Variance of each leader's innovations up to which the training data are valid, with some margin [m²]."""
     # S = r² / M²
     return jnp.asarray([WIDER * float(np.median(one.features[:, 0] ** 2 / one.features[:, 1])) for one in of])
