@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 FILE = re.compile(r"^`([\w./]+)`:\n\n```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 COMMANDS = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+REPORTS = "passed-*.xml"
 WALKS = dict(re.findall(r"^## Add a (\w+)\n(.*?)(?=^## |\Z)", TEXT, re.MULTILINE | re.DOTALL))
 
 
@@ -24,7 +25,6 @@ WALKS = dict(re.findall(r"^## Add a (\w+)\n(.*?)(?=^## |\Z)", TEXT, re.MULTILINE
 class Walk:
     """One walk in a copy of the tree: what its commands printed, and the tests that they ran and passed."""
 
-    files: tuple[str, ...]
     printed: str
     passed: frozenset[str]
 
@@ -53,17 +53,19 @@ def walk(request: pytest.FixtureRequest, tree: Path) -> Iterator[Walk]:
     """The walk of that name; its files are gone afterwards, so that no walk leans on another."""
     text = WALKS[request.param]
     files = dict(FILE.findall(text))
-    new = [tree / path for path in files]
-    for path, content in zip(new, files.values(), strict=True):
-        assert not path.exists(), f"{path.relative_to(tree)} is there already; a walk adds files and edits none."
-        path.parent.mkdir(exist_ok=True)  # one new folder at most
-        path.write_text(content, encoding="utf-8")
-    _lint(tree, files)
-    printed = "".join(_run(tree, line) for block in COMMANDS.findall(text) for line in block.splitlines())
-    cases = [case for report in tree.glob("passed-*.xml") for case in ElementTree.parse(report).iter("testcase")]
-    yield Walk(tuple(files), printed, frozenset(case.attrib["name"] for case in cases if not len(case)))
-    for path in (*new, *tree.glob("passed-*.xml")):
-        path.unlink()
+    for path in files:
+        assert not (tree / path).exists(), f"{path} is there already; a walk adds files and edits none."
+    try:
+        for path, content in files.items():
+            (tree / path).parent.mkdir(exist_ok=True)  # one new folder at most
+            (tree / path).write_text(content, encoding="utf-8")
+        _lint(tree, files)
+        printed = "".join(_run(tree, line) for block in COMMANDS.findall(text) for line in block.splitlines())
+        cases = [case for report in tree.glob(REPORTS) for case in ElementTree.parse(report).iter("testcase")]
+        yield Walk(printed, frozenset(case.attrib["name"] for case in cases if not len(case)))
+    finally:
+        for path in (*map(tree.joinpath, files), *tree.glob(REPORTS)):
+            path.unlink(missing_ok=True)
 
 
 def _lint(tree: Path, files: dict[str, str]) -> None:
@@ -77,7 +79,7 @@ def _lint(tree: Path, files: dict[str, str]) -> None:
 
 def _run(tree: Path, line: str) -> str:
     """One command in the copy, with the copy's package; what it printed."""
-    report = f"--junitxml=passed-{len(list(tree.glob('passed-*.xml')))}.xml"
+    report = f"--junitxml=passed-{len(list(tree.glob(REPORTS)))}.xml"
     environment = {
         **os.environ,
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
