@@ -22,9 +22,9 @@ from sensorfault.logs import read
 from sensorfault.logs.table import Log
 from sensorfault.methods.fit import fit
 from sensorfault.runtime.detect import detect
+from sensorfault.runtime.fault_tracker import QUIET_S
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.result import Detection
-from sensorfault.runtime.tracker import QUIET_S
 
 pytestmark = pytest.mark.real
 

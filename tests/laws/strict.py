@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import jax
 import pytest
 
+import sensorfault.core._jax  # noqa: F401 - float64, whatever a test imports
 from haste import optimised
 
 

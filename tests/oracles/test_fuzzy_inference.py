@@ -10,8 +10,8 @@ from core.scripted import FromBlock, Said
 from laws.walk import walk
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.types import FAULT, OK, Residual, Sample
+from sensorfault.runtime.encoding import decode, encode
 from sensorfault.runtime.runners import samples
-from sensorfault.runtime.store import _decode, _encode
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.statistic.fuzzy_inference import FuzzyInference
@@ -80,6 +80,6 @@ def test_what_is_not_valid_is_no_number_to_fear() -> None:
 def test_it_is_stored_to_the_bit(name: str) -> None:
     part = statistic(name)
     tensors: dict[str, np.ndarray] = {}
-    again = _decode(_encode(part, "statistic", tensors), tensors)
+    again = decode(encode(part, "statistic", tensors), tensors)
     assert eqx.tree_equal(part, again)
     assert again.columns == COLUMNS

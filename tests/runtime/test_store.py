@@ -23,11 +23,18 @@ from safetensors.numpy import save_file
 import fitted
 import sensorfault.runtime.store
 from sensorfault.logs.table import LogError
+from sensorfault.runtime import former
 from sensorfault.runtime.detect import detect
+from sensorfault.runtime.encoding import decode, encode
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.store import ModelError, load, save
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
+from sensorfault.stages.statistic.averaged_baarda_w import AveragedBaardaW
+from sensorfault.stages.statistic.baarda_w import BaardaW
+from sensorfault.stages.statistic.one_sided import OneSided
+from sensorfault.stages.statistic.select_residual import SelectResidual
+from sensorfault.stages.statistic.stuck_position import StuckPosition
 from sensorfault.stages.threshold.fixed import Fixed
 
 
@@ -260,11 +267,86 @@ def test_the_old_file_stays_when_writing_fails(tmp_path: Path, monkeypatch: pyte
     assert [file.name for file in tmp_path.iterdir()] == ["car.sensorfault"]
 
 
-def test_what_cannot_be_stored_leaves_no_file(tmp_path: Path) -> None:
-    monitor = eqx.tree_at(lambda m: m.residual, fitted.model("pca").monitor, object())
-    with pytest.raises(TypeError, match=r"monitor\.residual: a object cannot be stored"):
+class Local(eqx.Module):
+    """A decision that stands in no room."""
+
+    def init(self) -> tuple[()]:
+        return ()
+
+
+class Exact(eqx.Module):
+    """The name of a part that is saved, and another class."""
+
+
+Exact.__name__ = Exact.__qualname__ = "Exceed"
+
+REFUSED = {
+    "a value": (object(), "a object cannot be saved; make it an array, a number or a name."),
+    "a number that JSON lacks": (float("nan"), "a float cannot be saved; make it an array, a number or a name."),
+    "a class from elsewhere": (Local(), "'load' would not know the class Local, so it cannot be saved; "),
+    "a namesake": (Exact(), "'load' would not know the class Exceed, so it cannot be saved; "),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_cannot_be_stored_is_said_and_leaves_no_file(what: str, tmp_path: Path) -> None:
+    part, sentence = REFUSED[what]
+    monitor = eqx.tree_at(lambda m: m.decision, fitted.model("pca").monitor, part)
+    with pytest.raises(ModelError) as raised:
         save(replace(fitted.model("pca"), monitor=monitor), tmp_path / "odd.sensorfault")
+    text = str(raised.value)
+    assert text.startswith(f"monitor.decision: {sentence}")
+    assert "\n" not in text
+    assert text.endswith(".")
     assert not list(tmp_path.iterdir())
+
+
+BAARDA = BaardaW()
+FORMER = {
+    "Of": SelectResidual(BAARDA, 1),
+    "Late": OneSided(),
+    "Freed": BAARDA,
+    "AveragedFreed": AveragedBaardaW(jnp.asarray(20.0), 8, 5),
+    "Standing": StuckPosition(jnp.ones(8, bool), (6, 7)),
+}
+
+
+def renamed(header: object, old: str, new: str) -> object:
+    """The header with every part `new` called `old`."""
+    match header:
+        case dict():
+            named = {key: renamed(value, old, new) for key, value in header.items()}
+            return named | {"part": old} if header.get("part") == new else named
+        case list():
+            return [renamed(one, old, new) for one in header]
+        case _:
+            return header
+
+
+@pytest.mark.parametrize("name", former.PARTS)
+def test_a_file_that_names_a_part_as_it_was_loads(name: str, tmp_path: Path) -> None:
+    """As the only part, and in the monitor of a model if its tests are as many as the channels."""
+    part, now = FORMER[name], former.PARTS[name]
+    tensors: dict[str, np.ndarray] = {}
+    old = renamed(encode(part, "part", tensors), name, now)
+    assert old["part"] == name
+    assert eqx.tree_equal(decode(old, tensors), part)
+    if now not in ("BaardaW", "OneSided"):
+        return
+    model = fitted.model("pca")
+    model = replace(model, monitor=eqx.tree_at(lambda m: m.branches[1].statistic, model.monitor, part))
+    path = tmp_path / "now.sensorfault"
+    save(model, path)
+    header, tensors = opened(path.read_bytes(), tmp_path)
+    before = renamed(header, name, now)
+    assert before != header
+    same(model, load(sealed(before, tensors, tmp_path / "before.sensorfault")))
+
+
+@pytest.mark.parametrize(("old", "now"), former.METHODS.items())
+def test_a_file_that_names_its_method_as_it_was_loads(old: str, now: str, tmp_path: Path) -> None:
+    header, tensors = opened(stored(), tmp_path)
+    assert load(sealed(header | {"method": old}, tensors, tmp_path / "before.sensorfault")).method == now
 
 
 def test_killed_while_writing_leaves_the_old_file(tmp_path: Path) -> None:

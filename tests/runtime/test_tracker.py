@@ -7,8 +7,12 @@ import pytest
 
 from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
+from sensorfault.runtime.event_context import EventContext
+from sensorfault.runtime.fault_tracker import QUIET_S
+from sensorfault.runtime.model import MOTION
 from sensorfault.runtime.runners import StepResult
-from sensorfault.runtime.tracker import GAP_S, QUIET_S, EventContext, Tracker
+from sensorfault.runtime.silence_tracker import GAP_S
+from sensorfault.runtime.tracker import Tracker
 
 TICK_S = 0.02
 NAMES = (("gyro", "x"), ("gyro", "y"), ("gnss", "east"), ("gnss", "north"))
@@ -230,6 +234,31 @@ def test_a_faulty_sample_without_a_sensor() -> None:
     assert (event.sensor, event.channel, event.kind) == (None, None, "unknown")
     assert (event.start_s, event.end_s) == (at(10), at(14))
     assert (event.peak_score, event.limit) == (9.0, 2.0)
+
+
+NOBODY = {"sample": FAULT}
+
+
+def test_a_fault_of_nobody_has_the_peak_of_the_test_that_exceeded_its_limit_most() -> None:
+    """Also where every test knows whom it examines: it is over, and none of them could be named."""
+    drive = Drive(replace(WATCH, tests=((X, EAST), (Y,)))).run(10)
+    drive.run(3, **NOBODY, score=6.0).run(1, **NOBODY, score=9.0).run(2, **NOBODY, score=3.0)
+    (open_,) = drive.tracker.open()
+    event = drive.quiet().only()
+    for one in (open_, event):
+        assert (one.sensor, one.kind, one.peak_score, one.limit) == (None, "unknown", 9.0, 2.0)
+
+
+def test_a_fault_of_nobody_takes_no_peak_from_a_test_of_the_motion() -> None:
+    event = Drive(replace(WATCH, tests=(MOTION, (Y,)))).run(5, **NOBODY, score=6.0).quiet().only()
+    assert (event.subject, event.sensor, event.peak_score) == ("sensor", None, None)
+
+
+def test_the_peaks_of_a_named_fault_and_one_of_nobody_are_apart() -> None:
+    """A channel is accused for a while, then the fault goes on and nobody can be named."""
+    drive = Drive(replace(WATCH, tests=((X,), (Y,)))).run(5, accused={X: 4.0}, score=6.0).run(5, **NOBODY, score=40.0)
+    drive.quiet()
+    assert [(event.sensor, event.peak_score) for event in drive.ended] == [("gyro", 6.0), (None, 40.0)]
 
 
 def test_a_sensor_that_falls_silent_is_missing_from_when_it_should_have_spoken() -> None:

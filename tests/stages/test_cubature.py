@@ -1,8 +1,7 @@
-"""The cubature filter as a residual: what it foretells, what it takes in, and how it comes back."""
+"""The cubature filter as a residual: what it predicts, what it takes in, and how it comes back."""
 
 from dataclasses import replace
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -14,11 +13,10 @@ from sensorfault.core.types import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.methods.ranging.range_filter import Filter, cubature, followed, monitor, on_ranges
-from sensorfault.stages.residual.measurement_noise import SageHusa, Stated, WindowedNoise
+from sensorfault.stages.residual.measurement_noise import Stated
 from sensorfault.stages.statistic.normalised import Normalised
 
 R = jnp.asarray([9.0, 4.0])
-YES = jnp.ones(2, bool)
 
 
 def through(log, filter=Filter(q=0.1), limit=np.inf):  # noqa: B008
@@ -105,19 +103,8 @@ def test_nothing_is_told_before_a_first_fix() -> None:
     assert result.reports.residual.valid[201:, missions.RANGES[0]].any()
 
 
-@pytest.mark.parametrize("noise", [SageHusa(jnp.asarray(0.98)), WindowedNoise(50)])
-def test_noise_is_learned_from_what_is_taken_in(noise) -> None:
-    rng = np.random.default_rng(0)
-    state = noise.init(R)
-    learn = jax.jit(lambda *now: noise.learn(*now))
-    for _ in range(400):
-        innovation = jnp.asarray(rng.normal(0, np.sqrt([25.0 + 2.0, 1.0 + 2.0])))
-        state = learn(state, innovation, jnp.asarray([2.0, 2.0]), YES)
-    np.testing.assert_allclose(noise.noise(state, R, jnp.zeros(2), R), [25.0, 1.0], rtol=0.5)
-    after = learn(state, jnp.asarray([1e6, 1e6]), R, ~YES)
-    assert jax.tree.all(jax.tree.map(lambda a, b: bool((a == b).all()), after, state))
-
-
-def test_the_stated_noise_is_what_is_learned_first() -> None:
-    for noise in (Stated(), SageHusa(jnp.asarray(0.9)), WindowedNoise(5)):
-        np.testing.assert_array_equal(noise.noise(noise.init(R), R, jnp.zeros(2), R), R)
+def test_what_surprises_is_believed_less_at_once() -> None:
+    """R* = R / η, each measurement by itself; without `inflated` R stays as stated."""
+    innovation, predicted = jnp.asarray([10.0, 1.0]), jnp.asarray([1.0, 1.0])
+    np.testing.assert_array_equal(Stated().in_use(R, innovation, predicted), R)
+    np.testing.assert_allclose(Stated(inflated=True).in_use(R, innovation, predicted), [9.0 * 100.0 / 10.0, 4.0])

@@ -8,10 +8,12 @@ from jaxtyping import Bool, Float
 from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.table import Log
+from sensorfault.runtime.event_context import EventContext
+from sensorfault.runtime.fault_tracker import QUIET_S
 from sensorfault.runtime.model import MOTION, TOGETHER, Model
 from sensorfault.runtime.replay import Replayed
 from sensorfault.runtime.runners import StepResult
-from sensorfault.runtime.tracker import QUIET_S, EventContext, Tracker
+from sensorfault.runtime.tracker import Tracker
 
 
 def context_of(model: Model) -> EventContext:

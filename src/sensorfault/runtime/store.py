@@ -2,14 +2,11 @@
 
 import hashlib
 import json
-import math
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -21,17 +18,12 @@ from sensorfault.core.files import appearing
 from sensorfault.core.monitor import Monitor
 from sensorfault.core.types import Sample
 from sensorfault.logs.epochs import Framing
-from sensorfault.logs.table import Channel, LogError, Sensor
+from sensorfault.logs.table import Channel, Sensor
 from sensorfault.runtime import former
+from sensorfault.runtime.encoding import ModelError, Tensors, decode, encode
 from sensorfault.runtime.model import Model, owners
-from sensorfault.runtime.registry import parts
 
 FORMAT = 1
-Tensors = dict[str, np.ndarray]
-
-
-class ModelError(LogError):
-    """A model file that cannot be used. One sentence: what is wrong with it, and what to do."""
 
 
 def save(model: Model, path: Path | str) -> None:
@@ -41,7 +33,8 @@ def save(model: Model, path: Path | str) -> None:
     monitor's parts, and a digest over header and numbers.
 
     Raises:
-        TypeError: something else than a model or a path, or a part of the model that cannot be stored.
+        ModelError: a part of the monitor that `load` would not know, or that holds what cannot be written.
+        TypeError: something else than a model or a path.
     """
     expect(model, Model, "save: model", MODEL)
     expect_path(path, "save: path")
@@ -58,7 +51,7 @@ def save(model: Model, path: Path | str) -> None:
         "sigma": model.sigma,
         "summary": model.summary,
         "framing": vars(model.framing) if model.framing else None,
-        "monitor": _encode(model.monitor, "monitor", tensors),
+        "monitor": encode(model.monitor, "monitor", tensors),
     }
     text = json.dumps(header, sort_keys=True)
     with appearing(Path(path)) as temporary:
@@ -93,7 +86,7 @@ def load(path: Path | str) -> Model:
         header = json.loads(text)
         if header["format"] != FORMAT:
             raise ModelError(f"{path}: written in format {header['format']}, this version reads {FORMAT}; {refit}.")
-        monitor = _decode(header["monitor"], tensors)
+        monitor = decode(header["monitor"], tensors)
         if not isinstance(monitor, Monitor):
             raise TypeError("it holds no monitor")
         model = Model(
@@ -153,43 +146,3 @@ def _digest(text: str, tensors: Tensors) -> str:
         tensor = tensors[name]
         digest.update(f"{name} {tensor.dtype.str} {tensor.shape}".encode() + np.ascontiguousarray(tensor).tobytes())
     return digest.hexdigest()
-
-
-def _encode(thing: Any, name: str, tensors: Tensors) -> Any:
-    """A part as JSON. Its arrays go to `tensors`, under their path in the tree."""
-    match thing:
-        case eqx.Module() if parts().get(type(thing).__name__) is not type(thing):
-            raise TypeError(
-                f"{name}: 'load' would not know {type(thing).__qualname__}; put the class into a module of stages, "
-                "vehicles or numerics"
-            )
-        case eqx.Module():
-            inner = {f.name: _encode(getattr(thing, f.name), f"{name}.{f.name}", tensors) for f in fields(thing)}
-            return {"part": type(thing).__name__, "fields": inner}
-        case jax.Array() | np.ndarray():
-            tensors[name] = np.asarray(thing)
-            return {"tensor": name}
-        case tuple():
-            return [_encode(one, f"{name}.{i}", tensors) for i, one in enumerate(thing)]
-        case bool() | int() | str() | None:
-            return thing
-        case float() if math.isfinite(thing):
-            return thing
-        case _:
-            raise TypeError(f"{name}: a {type(thing).__name__} cannot be stored; make it an array, number or name")
-
-
-def _decode(header: Any, tensors: Tensors) -> Any:
-    match header:
-        case {"tensor": name}:
-            return jnp.asarray(tensors[name])
-        case {"part": part, "fields": inner}:
-            return _part(part)(**{field: _decode(one, tensors) for field, one in inner.items()})
-        case list():
-            return tuple(_decode(one, tensors) for one in header)
-        case _:
-            return header
-
-
-def _part(name: str) -> type[eqx.Module]:
-    return parts()[former.PARTS.get(name, name)]

@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.core.types import NEVER, Residual, Sample, Trust
 from sensorfault.numerics.columns import picked
 from sensorfault.numerics.cubature import Seen, bent, correct, observe, predict
-from sensorfault.stages.residual.measurement_noise import SageHusa, Stated, WindowedNoise
+from sensorfault.stages.residual.measurement_noise import Stated
 
 MANY = 20.0  # rejections in a row beyond which the process noise grows no more
 
@@ -56,7 +56,6 @@ class _Belief(NamedTuple):
     rejected: Float[Array, ""]  # measurements refused since one was last taken in
     last: Float[Array, " M"]  # measurements as they were last taken in; NEVER where none was
     received: Float[Array, " M"]  # when that was [s]
-    learned: Any  # of the measurements' noise
     alive: Bool[Array, ""]
 
 
@@ -65,7 +64,6 @@ class _Work(NamedTuple):
     sample: Sample
     seen: Seen
     innovation: Float[Array, " M"]
-    predicted: Float[Array, " M"]  # variance of the innovation without R
     used: Float[Array, " M"]  # R*
     there: Bool[Array, " M"]
     again: Bool[Array, " M"]  # exact repeats
@@ -85,7 +83,7 @@ class Cubature(eqx.Module):
 
     vehicle: Any
     r: Float[Array, " M"]
-    noise: Stated | SageHusa | WindowedNoise
+    noise: Stated
     growth: Float[Array, ""]
     repeated: Float[Array, ""]
     stale_s: Float[Array, ""]
@@ -95,8 +93,8 @@ class Cubature(eqx.Module):
     def init(self) -> _Belief:
         nothing = jnp.zeros(())
         never, no = jnp.asarray(NEVER, float), jnp.zeros((), bool)
-        last, learned = jnp.full(self.r.shape, NEVER, float), self.noise.init(self.r)
-        return _Belief(jnp.zeros(self.states), jnp.eye(self.states), never, nothing, last, last, learned, no)
+        last = jnp.full(self.r.shape, NEVER, float)
+        return _Belief(jnp.zeros(self.states), jnp.eye(self.states), never, nothing, last, last, no)
 
     def evaluate(self, belief: _Belief, sample: Sample) -> tuple[Residual, _Work]:
         motion: Motion = self.vehicle
@@ -108,7 +106,7 @@ class Cubature(eqx.Module):
         stale = sample.time - prior.received > self.stale_s
         curved = jnp.where(stale, bent(seen, motion.expected(prior.mean, sample)), 0.0)
         predicted = (seen.dz**2).sum(axis=1) + curved
-        used = self.noise.noise(prior.learned, self.r, innovation, predicted)
+        used = self.noise.in_use(self.r, innovation, predicted)
         again = there & (said == prior.last)
         used = used * jnp.where(again, self.repeated, 1.0) + curved
         # P_zz
@@ -128,10 +126,10 @@ class Cubature(eqx.Module):
             valid=(at & there[None]).any(axis=1),
             born=sample.born,
         )
-        return residual, _Work(prior, sample, seen, innovation, predicted, used, there, again)
+        return residual, _Work(prior, sample, seen, innovation, used, there, again)
 
     def update(self, pending: _Work, trust: Trust) -> _Belief:
-        prior, sample, seen, innovation, predicted, used, there, again = pending
+        prior, sample, seen, innovation, used, there, again = pending
         motion: Motion = self.vehicle
         taken = there & picked(trust.measured, motion.observed)
         mean, root = correct(prior.mean, seen, innovation, used, taken)
@@ -145,7 +143,6 @@ class Cubature(eqx.Module):
             rejected=jnp.where(taken.any() | begins, 0.0, jnp.minimum(prior.rejected + refused, MANY)),
             last=jnp.where(taken, picked(sample.value, motion.observed), prior.last),
             received=jnp.where(taken, sample.time, prior.received),
-            learned=self.noise.learn(prior.learned, innovation, predicted, taken),
             alive=prior.alive | begins,
         )
 
