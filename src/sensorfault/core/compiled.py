@@ -34,11 +34,11 @@ def folder() -> Path | None:
 
 def machine() -> str:
     """What a program compiled here needs to run: the processor's type and features, as one short name."""
-    told = ""
+    features = ""
     with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").split("\n\n", 1)[0].splitlines()
-        told = "\n".join(line for line in lines if line.split("\t")[0].strip() in ("flags", "Features", "model name"))
-    words = f"{platform.system()} {platform.machine()} {platform.processor()} {told}"
+        features = "\n".join(line for line in lines if line.split("\t")[0].strip() in ("flags", "Features", "model name"))
+    words = f"{platform.system()} {platform.machine()} {platform.processor()} {features}"
     return hashlib.sha256(words.encode()).hexdigest()[:16]
 
 
