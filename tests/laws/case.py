@@ -20,8 +20,10 @@ def limits_learned(state: MonitorState) -> Any:
 class Case:
     """A fitted monitor and a healthy log that it has not seen, about 400 samples; the laws do the damage.
 
-    The monitor is warm in the second half of the log. `lie` [SI] added to one fresh value there is named, and gated, at
-    once. `back_s` after a dropout, a gap in the clock or a long fault the verdicts are again those of the healthy run.
+    The monitor is warm in the second half of the log. `lie` [SI] added to one fresh value of a channel in `named` is
+    named, and gated, at once. A monitor that judges the vehicle and names nobody has `moving` instead: a lie on one of
+    these channels, which the motion cannot have made, is a fault of the motion at once. `back_s` after a dropout, a gap
+    in the clock or a long fault the verdicts are again those of the healthy run.
     """
 
     name: str
@@ -33,9 +35,17 @@ class Case:
     permuted: Callable[[np.ndarray], Monitor] | None = None  # the same monitor, for channels in this order
     quiet: Sample | None = None  # healthy logs with a leading axis, to count false alarms on
     named: tuple[int, ...] | None = None  # channels that a fault is laid on; all by default
+    moving: tuple[int, ...] = ()  # channels whose lie is a fault of the motion
     lost: dict[int, tuple[int, ...]] = field(default_factory=dict)  # who cannot be judged while a channel is silent
     tolerance: float = 1e-10  # of floats that two runners compute
     rate: float | None = None  # ... and the rate of them that each channel was designed for
+
+    def __post_init__(self) -> None:
+        if not self.accused and not self.moving:
+            raise ValueError(
+                f"{self.name}: this case accuses nobody, so most laws would say nothing of it; give the channels whose "
+                "lie is named (named), or those whose lie is a fault of the motion (moving)."
+            )
 
     @property
     def block(self) -> bool:

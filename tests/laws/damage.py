@@ -24,6 +24,11 @@ def telling(case: Case) -> int:
     return half(case.rows) + int(np.flatnonzero(fresh[half(case.rows) :].all(axis=1))[0])
 
 
+def last_telling(case: Case) -> int:
+    """The last such row, and not the very last of the log."""
+    return int(np.flatnonzero(np.asarray(case.rows.fresh)[:-1].all(axis=1))[-1])
+
+
 def lied(rows: Sample, span: slice, offset) -> Sample:
     return rows._replace(value=put(rows.value, span, np.asarray(rows.value)[span] + offset))
 

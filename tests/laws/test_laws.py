@@ -1,20 +1,24 @@
-"""The laws of ARCHITECTURE.md, over every guest and every recipe: see cases.py."""
+"""The laws of ARCHITECTURE.md, over every guest and every recipe: see cases/."""
 
 import functools
+import json
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import safetensors.numpy
 
 from laws.case import Case
-from laws.cases import NAMES, names_with
+from laws.cases import guests
 from laws.compilations import compilations
-from laws.damage import absent, alone, half, holed, lied, silenced, telling, troubled
+from laws.damage import absent, alone, half, holed, last_telling, lied, silenced, telling, troubled
+from laws.register import CASES, names_with
 from laws.walk import Walk, assert_close, assert_same, finite, walk
 from sensorfault.core.monitor import SUBJECTS, Monitor
 from sensorfault.core.types import FAULT, OK, UNKNOWN, Report, Sample
+from sensorfault.runtime.encoding import ModelError, Tensors, decode, encode
 from sensorfault.runtime.runners import Stepper, StepResult, fleet
 from sensorfault.stages.threshold.fixed import Fixed
 
@@ -24,7 +28,8 @@ def on(*names: str) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", names, indirect=True)
 
 
-every_case = on(*NAMES)
+every_case = on(*CASES)
+judging_motion = on(*names_with("moving"))
 
 
 @functools.cache
@@ -52,16 +57,30 @@ def push(stream: Stepper, rows: Sample, k: int) -> StepResult:
 
 @every_case
 def test_healthy_is_ok_and_a_lie_is_named(case: Case) -> None:
-    k = telling(case)
-    second = healthy(case).channel[half(case.rows) :]
-    assert (second == FAULT).mean() < 2 * (case.rate or 0.005)
-    assert (second == OK).any(axis=0)[list(case.accused)].all()
+    k, second = telling(case), slice(half(case.rows), None)
+    channel, motion = healthy(case).channel[second], healthy(case).motion[second]
+    for verdict in (channel, motion):
+        assert (verdict == FAULT).mean() < 2 * (case.rate or 0.005)
+    assert (channel == OK).any(axis=0)[list(case.accused)].all()
     for c in case.accused:
         result = walk(case.monitor, lied(case.rows, slice(k, k + 1), alone(case, c)))
         assert result.channel[k, c] == FAULT
         assert result.sensor[k, case.monitor.owner[c]] == FAULT
         assert result.sample[k] == FAULT
         assert not result.reports.trust.measured[k, c]
+
+
+@judging_motion
+def test_healthy_motion_is_ok_and_a_lie_about_it_is_its_fault(case: Case) -> None:
+    """... and no sensor's: what was measured is taken in as it would be without the verdict."""
+    k = telling(case)
+    assert (healthy(case).motion[half(case.rows) :] == OK).mean() > 0.5
+    for c in case.moving:
+        result = walk(case.monitor, lied(case.rows, slice(k, k + 1), alone(case, c)))
+        assert result.motion[k] == FAULT
+        assert not (result.channel == FAULT).any()
+        assert not (result.sample == FAULT).any()
+        assert_same(result.reports.trust.measured, healthy(case).reports.trust.measured)
 
 
 @every_case
@@ -125,6 +144,21 @@ def test_two_lies_leave_the_same_filter_limits_and_weights(case: Case) -> None:
         after_small, after_big = (jax.tree.map(lambda x: x[k], result.states) for result in (small, big))
         assert_same(after_small.residual, after_big.residual)
         assert_same(case.learned(after_small), case.learned(after_big))
+
+
+@judging_motion
+def test_a_fault_of_the_motion_changes_neither_filter_nor_limits(case: Case) -> None:
+    """Two lies leave the same limits and weights, and the filter is what it would be with the verdict silent."""
+    k = telling(case)
+    silent = with_limit(case.monitor, healthy(case).reports, np.inf)
+    for c in case.moving:
+        small, big = (lied(case.rows, slice(k, k + 1), n * alone(case, c)) for n in (1, 2))
+        after = [walk(case.monitor, rows) for rows in (small, big)]
+        for result, rows in zip(after, (small, big), strict=True):
+            assert result.motion[k] == FAULT
+            assert_same(result.states.residual, walk(silent, rows).states.residual)
+        one, two = (case.learned(jax.tree.map(lambda x: x[k], result.states)) for result in after)
+        assert_same(one, two)
 
 
 @every_case
@@ -193,6 +227,7 @@ def test_an_empty_sample_is_unknown(case: Case) -> None:
     late = np.asarray(case.rows.time)[long] - np.asarray(case.rows.time)[k - 1] > case.hold_s.max() + 1e-9
     assert (result.channel[long][late] == UNKNOWN).all()
     assert (result.sample[long][late] == UNKNOWN).all()
+    assert (result.motion[long][late] == UNKNOWN).all()
 
 
 @on(*names_with("block"))
@@ -247,14 +282,35 @@ def assert_fleet(case: Case, vehicles: int) -> None:
     for i, log in enumerate(logs):
         single = walk(case.monitor, log)
         mine = jax.tree.map(lambda x, i=i: np.asarray(x[i]), result)
-        alone_told = single.reports.verdict, single.reports.residual.value, single.reports.trust.value
-        assert_close(mine, alone_told, case.tolerance)
+        expected = single.reports.verdict, single.reports.residual.value, single.reports.trust.value
+        assert_close(mine, expected, case.tolerance)
         end = jax.tree.map(lambda x, i=i: np.asarray(x[i]), states)
-        # a window's moments are sums of cubes that cancel: what rounding leaves is larger there than in what is told
+        # a window's moments are sums of cubes that cancel: what rounding leaves is larger there than in the report
         assert_close(end, jax.tree.map(lambda x: x[-1], single.states), max(1e-8, case.tolerance))
 
 
-# 6. Saved and loaded: the same to the bit. See test_store.py
+# 6. Saved and loaded: the same to the bit.
+
+
+@every_case
+def test_saved_and_loaded_it_says_the_same(case: Case, guests_known: None) -> None:
+    """Through the bytes of a model file: see test_store.py for what else stands in one."""
+    tensors: Tensors = {}
+    header = json.dumps(encode(case.monitor, "monitor", tensors))
+    back = decode(json.loads(header), safetensors.numpy.load(safetensors.numpy.save(tensors)))
+    assert_same(back, case.monitor)
+    for one, two in zip(jax.tree.leaves(back), jax.tree.leaves(case.monitor), strict=True):
+        assert one.dtype == two.dtype
+    assert_same(walk(back, troubled(case)), trouble(case))
+
+
+@on(*guests.CASES)
+def test_what_load_would_not_know_is_not_saved(case: Case) -> None:
+    """Toy parts stand in no room of the package."""
+    with pytest.raises(
+        ModelError, match=r"^monitor[\w.]*: 'load' would not know the class \w+, so it cannot be saved; "
+    ):
+        encode(case.monitor, "monitor", {})
 
 
 # 7. One compilation a shape.
@@ -264,7 +320,7 @@ def assert_fleet(case: Case, vehicles: int) -> None:
 def test_one_compilation_a_shape(case: Case) -> None:
     """Neither another log nor other numbers in the monitor compile the replay again."""
     rows = troubled(case)
-    shifted = jax.tree.map(lambda x: x * 1.5 if np.issubdtype(x.dtype, np.floating) else x, case.monitor)
+    shifted = jax.tree.map(lambda x: x * 1.5 if eqx.is_inexact_array_like(x) else x, case.monitor)
     start = case.monitor.init()
     healthy(case)
     with compilations() as made:
@@ -288,6 +344,9 @@ def assert_back(case: Case, result: Walk, end: int, rows: Sample | None = None) 
     assert back.sum() >= 20, "the log ends too early to tell"
     assert (result.channel[back] == healthy(case).channel[back]).mean() > 0.99
     assert (result.channel[back] == OK).any(axis=0)[list(case.accused)].all()
+    if case.moving:
+        assert (result.motion[back] == healthy(case).motion[back]).mean() > 0.99
+        assert (result.motion[back] == OK).any()
 
 
 @every_case
@@ -306,11 +365,16 @@ def test_back_after_a_gap_in_the_clock(case: Case) -> None:
 
 @every_case
 def test_back_after_a_long_fault(case: Case) -> None:
-    start = telling(case)
-    for c in case.accused:
-        result = walk(case.monitor, lied(case.rows, slice(start, start + 75), alone(case, c)))
-        assert result.channel[start, c] == FAULT
-        assert_back(case, result, start + 75)
+    """... and as watchful as before: the same lie told again is named again."""
+    start, again = telling(case), last_telling(case)
+    for c in (*case.accused, *case.moving):
+        lie = alone(case, c)
+        long = slice(start, start + 75)
+        rows = lied(case.rows, long, lie)
+        result = walk(case.monitor, lied(rows, slice(again, again + 1), lie))
+        for k in (start, again):
+            assert (result.motion[k] if c in case.moving else result.channel[k, c]) == FAULT
+        assert_back(case, walk(case.monitor, rows), start + 75)
 
 
 # 9. False alarms come as often as designed.

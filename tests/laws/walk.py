@@ -27,6 +27,10 @@ class Walk(NamedTuple):
     def sample(self) -> np.ndarray:
         return self.reports.verdict.sample
 
+    @property
+    def motion(self) -> np.ndarray:
+        return self.reports.verdict.motion
+
 
 @eqx.filter_jit
 def _walk(monitor: Monitor, state: MonitorState, rows: Sample) -> Walk:
@@ -38,6 +42,8 @@ def _walk(monitor: Monitor, state: MonitorState, rows: Sample) -> Walk:
 
 
 def walk(monitor: Monitor, rows: Sample, state: MonitorState | None = None) -> Walk:
+    """Numbers go in without weak types, which would compile the same monitor again once it was saved and loaded."""
+    monitor = jax.tree.map(lambda x: np.asarray(x) if isinstance(x, jax.Array) else x, monitor)
     walked: Walk = _walk(monitor, monitor.init() if state is None else state, rows)
     return jax.tree.map(np.asarray, walked)
 

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from laws.cases import two_joints
+from laws.cases.online_network import two_joints
 from sensorfault.core.types import FAULT, OK, UNKNOWN
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.arm.online_network import Setting, build

@@ -10,8 +10,8 @@ import pytest
 
 import sensorfault
 from sensorfault.methods.catalog import METHODS, recipe
-from sensorfault.runtime import former, registry
-from sensorfault.runtime.registry import ROOMS, parts
+from sensorfault.runtime import former
+from sensorfault.runtime.registry import ROOMS, parts, parts_in
 
 SRC = Path(sensorfault.__file__).parent
 
@@ -48,9 +48,8 @@ def test_two_parts_of_one_name_are_refused(tmp_path: Path, monkeypatch: pytest.M
         text = "" if name == "__init__" else "import equinox as eqx\n\n\nclass Twin(eqx.Module):\n    pass\n"
         (room / f"{name}.py").write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(registry, "ROOMS", ("room_of_twins",))
     with pytest.raises(TypeError, match=r"two parts are called Twin: room_of_twins\.one and room_of_twins\.two"):
-        parts.__wrapped__()
+        parts_in(("room_of_twins",))
     for name in [name for name in sys.modules if name.startswith("room_of_twins")]:
         del sys.modules[name]
 

@@ -3,6 +3,7 @@
 Nothing else is ever built from a model file.
 """
 
+from collections.abc import Iterable
 from functools import cache
 from importlib import import_module
 from pkgutil import walk_packages
@@ -19,8 +20,17 @@ def parts() -> dict[str, type[eqx.Module]]:
     Raises:
         TypeError: two parts have the same name, so that a model file would be ambiguous.
     """
+    return parts_in(ROOMS)
+
+
+def parts_in(rooms: Iterable[str]) -> dict[str, type[eqx.Module]]:
+    """Part classes, by name, that the modules of these packages define.
+
+    Raises:
+        TypeError: two of them have one name.
+    """
     found: dict[str, type[eqx.Module]] = {}
-    for room in ROOMS:
+    for room in rooms:
         for module in walk_packages(import_module(room).__path__, f"{room}."):
             for name, thing in vars(import_module(module.name)).items():
                 if isinstance(thing, type) and issubclass(thing, eqx.Module) and thing.__module__ == module.name:

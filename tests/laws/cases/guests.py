@@ -1,0 +1,9 @@
+"""The toy guests, which are in no catalog."""
+
+from laws.guests.zoo import zoo
+
+_ZOO = {case.name: case for case in zoo()}
+CASES = {name: lambda case=case: case for name, case in _ZOO.items()}
+HAVE = {
+    field: tuple(name for name, case in _ZOO.items() if getattr(case, field)) for field in ("permuted", "block", "rate")
+}
