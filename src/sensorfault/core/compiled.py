@@ -37,7 +37,9 @@ def machine() -> str:
     features = ""
     with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").split("\n\n", 1)[0].splitlines()
-        features = "\n".join(line for line in lines if line.split("\t")[0].strip() in ("flags", "Features", "model name"))
+        features = "\n".join(
+            line for line in lines if line.split("\t")[0].strip() in ("flags", "Features", "model name")
+        )
     words = f"{platform.system()} {platform.machine()} {platform.processor()} {features}"
     return hashlib.sha256(words.encode()).hexdigest()[:16]
 
