@@ -1,4 +1,4 @@
-"""The laws of ARCHITECTURE.md, over every guest and every recipe: see cases/."""
+"""The laws of a monitor, over every guest and every recipe: see cases/."""
 
 import functools
 import json
