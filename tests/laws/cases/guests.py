@@ -3,9 +3,9 @@
 from laws.guests.motion import moving
 from laws.guests.zoo import zoo
 
-_ZOO = {case.name: case for case in (*zoo(), moving())}
-CASES = {name: lambda case=case: case for name, case in _ZOO.items()}
+ZOO = {case.name: case for case in (*zoo(), moving())}
+CASES = {name: lambda case=case: case for name, case in ZOO.items()}
 HAVE = {
-    field: tuple(name for name, case in _ZOO.items() if getattr(case, field))
+    field: tuple(name for name, case in ZOO.items() if getattr(case, field))
     for field in ("permuted", "block", "rate", "moving")
 }
