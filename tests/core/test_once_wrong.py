@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.scripted import FromBlock, Says, branch, each, says, script, walk
-from laws.cases import ZOO
+from laws.cases.guests import ZOO
 from laws.compilations import compilations
 from laws.walk import walk as plain_walk
 from sensorfault.core.monitor import Branch, Monitor

@@ -5,6 +5,7 @@ import numpy as np
 
 from laws.case import Case
 from sensorfault.core.types import Sample
+from sensorfault.logs.epochs import Epoch
 
 
 def put(array, where, what) -> np.ndarray:
@@ -45,12 +46,15 @@ def absent(rows: Sample, span: slice, channels=slice(None)) -> Sample:
 
 
 def holed(rows: Sample, row: int) -> Sample:
-    """One NaN in each floating array of the block."""
+    """One NaN in each floating array of the block. A row of an epoch is marked then, as framing marks it."""
 
     def hole(x):
         return put(x, (row, *[0] * (x.ndim - 1)), np.nan) if np.issubdtype(x.dtype, np.floating) else x
 
-    return rows._replace(block=jax.tree.map(hole, rows.block))
+    block = jax.tree.map(hole, rows.block)
+    if isinstance(rows.block, Epoch):
+        block = block._replace(ok=put(rows.block.ok, (row, 0), False), dt=rows.block.dt)
+    return rows._replace(block=block)
 
 
 def alone(case: Case, channel: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from types import ModuleType
 from laws import cases
 from laws.case import Case
 
-OPTIONAL = ("permuted", "rate", "moving")  # what only some cases have; there is a law for those that do
+OPTIONAL = ("permuted", "block", "rate", "moving")  # what only some cases have; there is a law for those that do
 
 
 def modules() -> list[ModuleType]:

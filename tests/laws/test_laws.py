@@ -1,4 +1,4 @@
-"""The laws of ARCHITECTURE.md, over every guest and every recipe: see cases/."""
+"""The laws of a monitor, over every guest and every recipe: see cases/."""
 
 import functools
 import json
@@ -225,6 +225,7 @@ def test_an_empty_sample_is_unknown(case: Case) -> None:
     result = walk(case.monitor, silenced(case.rows, long))
     assert finite(result.states)
     late = np.asarray(case.rows.time)[long] - np.asarray(case.rows.time)[k - 1] > case.hold_s.max() + 1e-9
+    assert late.any()
     assert (result.channel[long][late] == UNKNOWN).all()
     assert (result.sample[long][late] == UNKNOWN).all()
     assert (result.motion[long][late] == UNKNOWN).all()

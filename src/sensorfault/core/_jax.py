@@ -1,6 +1,6 @@
 """JAX as this package needs it: float64, steps on the calling thread of a CPU, small loops compiled as one function.
 
-Must come before JAX's first computation; after it these settings have no effect but on speed and precision.
+Must come before JAX's first computation; after it these settings only change speed and precision.
 """
 
 import os

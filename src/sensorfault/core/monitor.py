@@ -32,9 +32,9 @@ class Branch(eqx.Module):
     `gates`: an alarm of this branch may keep the present sample out of the filter. A window's alarm must not: it is
     about the past. `certain`: it accuses by itself (an exact repeat), so all it accuses are taken out at once, before
     the largest of the others is looked for. `subject`: "motion" for a branch that judges the vehicle instead of its
-    sensors. Such a branch says nothing while a sensor is at fault nor for `memory_s` after [s]. A sensor's branch with
-    a memory presumes that the vehicle moves like its model, and says nothing while a motion that `excuses` is at fault,
-    nor for so long after: one that the accused sensor could not have made up.
+    sensors. Such a branch is not judged while a sensor is at fault, nor for `memory_s` after [s]. A sensor's branch
+    with a memory presumes that the vehicle moves like its model, so it is not judged while a branch that `excuses`
+    finds the motion at fault, nor for `memory_s` after. A branch excuses if no sensor fault can raise its alarm.
     """
 
     statistic: Stage[Any, Residual, Score, Any]
@@ -82,13 +82,14 @@ _Round = tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " C"], Int[Array,
 
 
 class Monitor(eqx.Module):
-    """A residual generator, judged in several branches, decided, recovered from: fitted and ready to run.
+    """A fitted residual generator with its branches of tests, decision and recovery, ready to run.
 
-    `owner[c]` is the sensor of channel c. `most` bounds how many sensors one sample may exclude, largest first; what is
-    still accused then is *unknown*. With most = 0 all accused are named at once. `together`: a fault on one channel
-    takes out its whole sensor (a fix), not only the channels accused (an axis of a gyro). `least`: nor is anybody
-    excluded once no more than so many channels remain (satellites that just tell a position). `hold_s[c]`: for how
-    long a value and a verdict stand without a new measurement [s]; 0 for a channel that comes with every sample.
+    `owner[c]` is the sensor of channel c. `most` bounds how many sensors one sample may exclude, largest first; a
+    channel that is still accused then is *unknown*. With most = 0 all accused are named at once. `together`: a fault on
+    one channel takes out its whole sensor (a fix), not only the channels accused (an axis of a gyro). `least`: no
+    sensor is excluded once no more than so many channels remain (as few satellites as a position needs). `hold_s[c]`:
+    for how long a value and a verdict stand without a new measurement [s]; 0 for a channel that comes with every
+    sample.
     """
 
     residual: Stage[Any, Sample, Residual, Any]
@@ -163,7 +164,7 @@ class Monitor(eqx.Module):
     def _intake(
         self, state: MonitorState, sample: Sample, silence: Float[Array, " C"]
     ) -> tuple[Sample, Bool[Array, " C"]]:
-        """What is not a number is not there; what came a moment ago is held, not absent."""
+        """A value that is not a number is absent; one that came within `hold_s` is held, not absent."""
         arrived = sample.present & jnp.isfinite(sample.value)
         held = (silence >= 0) & (silence <= self.hold_s) & ~sample.born
         value = jnp.where(arrived, sample.value, state.last)
@@ -199,7 +200,7 @@ class Monitor(eqx.Module):
     ) -> tuple[Accusation, Any, Bool[Array, " C"], Bool[Array, " C"]]:
         """Take out the worst sensor and judge the rest again, up to `most` times. A healthy sample pays nothing.
 
-        Returns what the last judgement said, the channels struck (accused and out), and all channels out.
+        Returns the last judgement, the channels excluded (accused and taken out), and all channels taken out.
         """
         owner = jnp.asarray(self.owner)
         nobody = jnp.zeros(len(self.owner), bool)
@@ -240,7 +241,7 @@ class Monitor(eqx.Module):
         out: Bool[Array, " C"],
     ) -> tuple[Verdict, Float[Array, " C"], Bool[Array, " C"]]:
         """Three-valued verdicts, when each channel was last tested, and which channels a filter must not take in."""
-        # Accused by this sample's own scores, yet no exclusion left: unknown, not ok.
+        # Accused by this sample's own scores, but no exclusion is left: unknown, not ok.
         left = accusation.gated & (accusation.size > -jnp.inf) & ~excluded & bool(self.most)
         bad = accusation.named & ~left
         clear = accusation.tested & ~left & ~out & ~accusation.unattributed

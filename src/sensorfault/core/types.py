@@ -1,4 +1,4 @@
-"""What travels through a monitor: one sample, what was expected of it, how far off it was, and what to make of that.
+"""What travels through a monitor: one sample, what was expected of it, how far off it was, and the verdict.
 
 C channels (slots), S sensors, K tests. A channel belongs to one sensor; only the Monitor knows which.
 """
@@ -52,7 +52,7 @@ class Residual(NamedTuple):
 class Score(NamedTuple):
     """K tests: one a sample, one a channel, one a bank member or window.
 
-    `covers`: whom test k examined (its silence clears them). `blame`: whom it accuses, 0 to 1.
+    `covers`: the channels test k examined (its silence clears them). `blame`: those it accuses, 0 to 1.
     """
 
     value: Float[Array, " K"]
@@ -65,8 +65,8 @@ class Evidence(NamedTuple):
     """All tests of one sample that judge sensors, branch by branch, as the decision sees them.
 
     `gates[b]`: whether an alarm of branch b may keep this sample out of a filter (a window's alarm may not).
-    `certain[b]`: whether it accuses by itself, whatever the other channels say (an exact repeat does). `struck`:
-    channels already taken out of this sample, with the accusation standing. `born`: as in Sample.
+    `certain[b]`: whether it accuses by itself, whatever the other channels say (an exact repeat does). `excluded`:
+    channels already taken out of this sample, which stay accused. `born`: as in Sample.
     """
 
     time: Float[Array, ""]
@@ -82,10 +82,10 @@ class Accusation(NamedTuple):
     """What a decision says of one sample.
 
     `named`: faulty. `gated`: named, and by a test that may keep it out of a filter; `certain`: by one that accuses by
-    itself. `suspect`: over a limit, whether or not that is a fault yet, so that nothing is learned from it. `unlaid`:
-    examined by a test that is over its limit and cannot say on whose account, so that nobody it examined is cleared.
-    `size` ranks the accused; it is -inf for all others. `tested`: examined by some test. `hit`: something is wrong,
-    whether or not it can be said on whose account.
+    itself. `suspect`: over a limit, whether or not that is a fault yet, so that nothing is learned from it.
+    `unattributed`: examined by a test that is over its limit and cannot say which channel causes it, so no channel it
+    examined is cleared. `size` ranks the accused; it is -inf for all others. `tested`: examined by some test. `hit`:
+    something is wrong, whether or not the channel is known.
     """
 
     named: Bool[Array, " C"]

@@ -80,5 +80,5 @@ def _branch(name: str, how: Framing, innovations: np.ndarray) -> Branch:
     return lof_efd.branch(how, known, 3 * float(factors.max()))
 
 
-# The law of a hole in the block does not hold here: a hole in an epoch's satellites accuses healthy ones for a while.
 CASES = {name: functools.partial(navigating, name) for name in (rail.NAME, lof_efd.NAME, *TESTS)}
+HAVE = {"block": tuple(CASES)}

@@ -6,11 +6,11 @@ from sensorfault.core.types import Accusation, Evidence
 
 
 def accuse(evidence: Evidence, share: float) -> Accusation:
-    """Whom this sample's own scores accuse.
+    """The channels that this sample's own scores accuse.
 
     A test over its limit names every channel with at least `share` of its largest blame; the size of an accusation is
-    blame times score over limit. Struck channels stay accused; their size is -inf, since they are out already. Where
-    a test can say nothing on whose account it is over, all it covers are suspect.
+    blame times score over limit. Excluded channels stay accused; their size is -inf, since they are out already. Where
+    a test cannot say which channel causes its alarm, all channels it covers are suspect.
     """
     named = gated = certain = suspect = tested = evidence.excluded
     unattributed = jnp.zeros_like(evidence.excluded)

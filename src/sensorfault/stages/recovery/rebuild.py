@@ -10,14 +10,14 @@ from sensorfault.core.types import FAULT, NEVER, OK, Residual, Sample, Trust, Ve
 
 
 class _Since(NamedTuple):
-    healthy: Float[Array, " C"]  # when the channel was last taken at its own word [s]
+    healthy: Float[Array, " C"]  # when the channel was last trusted [s]
     accused: Float[Array, " C"]  # when it was last kept out [s]
 
 
 class Rebuild(eqx.Module):
     """Stand-in = expected value, up to `horizon_s` after the last trusted measurement; one for all or one a channel.
 
-    A channel is taken at its own word again `readmit_s` after the last accusation: a score that dips below its limit
+    A channel is trusted again `readmit_s` after the last accusation: a score that dips below its limit
     for a moment does not make a fault healthy.
     """
 

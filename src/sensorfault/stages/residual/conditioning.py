@@ -1,4 +1,4 @@
-"""Conditioning residual: a sample minus what the few before it lead to expect."""
+"""Conditioning residual: a sample minus its expectation given the few before it."""
 
 from typing import NamedTuple
 
@@ -26,11 +26,11 @@ class Conditioning(eqx.Module):
     """e = x_t - E[x_t | x_t-1 .. x_t-W] for jointly Gaussian rows, with the conditional covariance.
 
     The window takes measured values within `bound` conditional sigmas of what was expected: a spike too small to be
-    named would otherwise spoil the next W rows. Where a channel is not to be believed its stand-in or, failing that,
-    its last trusted value takes the place, and its word counts for less by the time: `drift` [SI^2/s] up to `most`
-    [SI^2] of variance, which its weight in the window hands on to the others. So a start, a gap in the clock and a long
+    named would otherwise spoil the next W rows. Where a channel is not trusted, its stand-in or, failing that, its
+    last trusted value takes its place, and counts for less with time: its variance grows by `drift` [SI^2/s] up to
+    `most` [SI^2], which its weight in the window passes on to the others. So a start, a gap in the clock and a long
     fault all end alike: the first value after them is accepted if the channel was ever like that, and fills its window.
-    How it moves is told only by W rows after that; until then it is not valid.
+    How it moves is known only after W more rows; until then it is not valid.
     """
 
     weights: Float[Array, "C WC"]  # of the rows of the window, the newest first

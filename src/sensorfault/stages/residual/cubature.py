@@ -72,13 +72,13 @@ class _Work(NamedTuple):
 class Cubature(eqx.Module):
     """The residual is the innovation of each observed channel, with P_zz of the stated R; `noise` is the R* in use.
 
-    `vehicle` is a Motion. `r`: stated variances of the measurements. `noise`: how R is adapted. `growth`: each
-    measurement refused in a row makes the variance of the process larger by this share (up to 20 of them), so that a
-    filter that refuses all soon doubts itself instead of them. `repeated`: an exact repeat's R is so many times as
-    large: a sensor that says the same to the last bit has likely not measured. The filter begins where the vehicle can
-    tell its state. Of a measurement that was not taken in for `stale_s`, what h bends within the filter's spread counts
-    as noise: points that stand far apart would else make a vague belief a wrong one.
-    Xu et al. 2023, (6)-(20), (30) and (31); what trust leaves out has gain 0, (33)-(35).
+    `vehicle` is a Motion. `r`: stated variances of the measurements. `noise`: the R in use. `growth`: each measurement
+    refused in a row makes the variance of the process larger by this share (up to 20 of them), so that a filter that
+    refuses all soon trusts itself less than them. `repeated`: an exact repeat's R is so many times as large: a sensor
+    that repeats itself to the last bit has likely not measured. The filter begins where the vehicle's state is
+    measured. Of a measurement that was not taken in for `stale_s`, what h bends within the filter's spread counts as
+    noise: else points that stand far apart would turn an uncertain state into a wrong one. Xu et al. 2023, (6)-(20),
+    (30) and (31); what trust leaves out has gain 0, (33)-(35).
     """
 
     vehicle: Any

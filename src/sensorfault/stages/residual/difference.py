@@ -1,4 +1,4 @@
-"""Difference of two sensors that say the same: a height against an independent one, averaged from beat to beat."""
+"""Difference of two sensors of one quantity: a height against an independent one, averaged from beat to beat."""
 
 from typing import NamedTuple
 
@@ -66,10 +66,10 @@ class Difference(eqx.Module):
     """e = h - (r + r' (t_h - t_r + lag)) - offset, h, r, t the means of a beat, r' the reference's speed between beats.
 
     A beat is over with the first fix at least `beat_s` after the one that closed the beat before, so a slow receiver
-    sets the beat itself. The lag says how much later the reference shows what both see; without it a climb looks like
-    a drift. The speed comes from the reference alone: what is judged has no part in what it is judged by. The offset is
-    the mean of the first `warm` beats, and then, where `memory_s` is finite, follows trusted differences so slowly: a
-    test for slopes wants it constant, a test for offsets wants it to follow what weather does.
+    sets the beat itself. The lag says how much later the reference shows what both see; without it a climb looks like a
+    drift. The speed comes from the reference alone: the measured channel has no part in its own reference. The offset
+    is the mean of the first `warm` beats, and then, where `memory_s` is finite, follows trusted differences so slowly:
+    a test for slopes wants it constant, a test for offsets wants it to follow what weather does.
 
     The `measured` channel alone is valid, at the end of a beat. Its expected value is at every tick what the reference
     says, with the offset. After `gap_s` without a beat or without the reference, the next beat only begins anew.

@@ -1,4 +1,4 @@
-"""Displacement residual: a new position minus the one a second ago moved by what a network says of the way between."""
+"""Displacement residual: a new position minus the one a second ago moved by a network's displacement."""
 
 from typing import NamedTuple
 
@@ -42,7 +42,7 @@ class Displacement(eqx.Module):
     `stride`, each with the way before beside it. n samples are about a second.
 
     Position is valid once N samples have followed on it. A gap in the clock of more than `gap_s`, or more than
-    `stale_s` without a position to take, and all starts anew.
+    `stale_s` without a position to take, starts all anew.
     """
 
     network: Lstm

@@ -26,7 +26,7 @@ class _Work(NamedTuple):
 class Extrapolation(eqx.Module):
     """Order 0: y~ = y (persistence); order 1: y~ = y + (y - y') / (t - t') Δt, over the last new trusted measurements.
 
-    What every predictor has to beat. Channels with `watched` False are never valid. Of an `angle` only the difference
+    The baseline of every predictor. Channels with `watched` False are never valid. Of an `angle` only the difference
     within half a turn counts. After more than `stale_s` without a value to take, a channel starts anew.
     """
 

@@ -95,7 +95,7 @@ def _stretches(belief: Belief, epoch: Epoch, parts: int) -> list[Rows]:
 
 
 def begun(after: Belief, found: Bool[Array, ""]) -> Belief:
-    """With a position found in one epoch a filter of position and velocity begins; lost, it begins anew."""
+    """A filter of position and velocity begins with a position found in one epoch, and begins anew when lost."""
     first = alignment.moving(len(after.cov))
     vague = jnp.stack([after.cov[i, i] for i in (6, 7, 8)]).max() > LOST_M**2
     height = jnp.sqrt((after.nav.position**2).sum()) - alignment.EARTH_M
@@ -116,7 +116,7 @@ def begun(after: Belief, found: Bool[Array, ""]) -> Belief:
 
 
 def aligned(after: Belief, blind: Bool[Array, ""], grade: Grade) -> Belief:
-    """Once its course is known, and the inertial unit heard, it navigates by it."""
+    """Once its course is known and inertial rows arrive, it navigates by the inertial unit."""
     ready = (after.phase == MOVING) & ~blind & alignment.course_known(after.nav, after.cov)
     biases = grade.gyro_bias, grade.force_bias
     nav, cov = alignment.along_course(after.nav, after.cov, *biases)

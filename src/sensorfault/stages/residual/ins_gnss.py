@@ -30,12 +30,12 @@ class _Work(NamedTuple):
 class InsGnss(eqx.Module):
     """Error-state extended Kalman filter in ECEF of 17 states (`numerics.ins_error`). Wang et al. 2023, (1)-(9).
 
-    Channels are the pseudoranges [m] of S satellites, and behind them their Dopplers [Hz] if `rates`, told as
-    residuals in their own units; the sample's block is an `Epoch`. The nominal state goes with the rows of the inertial
-    unit, its covariance `parts` times between two epochs. Without them it is a filter of position and velocity.
-    It begins by least squares, and takes its heading from its course. `system`: of each satellite, 0 for those whose
-    clock the receiver's is told against; others have an offset. `wheel` and `aside`: standard deviations of speed by
-    the wheels and of what a wheeled vehicle moves to the side or up [m/s], used where the epoch has the former.
+    Channels are the pseudoranges [m] of S satellites, and behind them their Dopplers [Hz] if `rates`, with residuals in
+    their own units; the sample's block is an `Epoch`. The nominal state goes with the rows of the inertial unit, its
+    covariance `parts` times between two epochs. Without them it is a filter of position and velocity. It begins by
+    least squares, and takes its heading from its course. `system`: of each satellite, 0 for those whose clock the
+    receiver's offset refers to; others have an offset of their own. `wheel` and `aside`: standard deviations of speed
+    by the wheels and of what a wheeled vehicle moves to the side or up [m/s], used where the epoch has the former.
 
     `bank`: the innovation of a satellite is against a filter that never took that satellite in (leave one out).
     """

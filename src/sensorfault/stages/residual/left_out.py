@@ -21,7 +21,7 @@ def leave_one_out(
 def without(
     prior: Belief, refused: Bool[Array, " C"], size: Float[Array, " C"], suspect: float
 ) -> tuple[Float[Array, " n"], Belief]:
-    """A satellite that is newly left out has spoilt every filter but that without it: all go on from that one.
+    """A satellite that is newly left out has spoilt every filter that used it: all continue from the one without it.
 
     `size` of the residuals, in their standard deviations; a filter whose own is at least `suspect` of the worst stays.
     Returns what is then estimated as the errors of the nominal state, and the belief.

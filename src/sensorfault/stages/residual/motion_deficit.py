@@ -1,4 +1,4 @@
-"""Motion deficit: the way that the velocity says, minus the displacement of the position."""
+"""Motion deficit: integrated velocity minus the displacement of the position."""
 
 from typing import NamedTuple
 
@@ -48,7 +48,7 @@ class _State(NamedTuple):
 
 
 class _Work(NamedTuple):
-    """The state carried on by the velocity before, and what this sample's own would mend of it if it is trusted."""
+    """The state carried on by the velocity before, and the correction by this sample's own if it is trusted."""
 
     state: _State
     new: Bool[Array, ""]  # there is a new velocity
@@ -64,9 +64,9 @@ class _Work(NamedTuple):
 
 
 class MotionDeficit(eqx.Module):
-    """The distance that speed and heading say minus the displacement of the position, over H horizons (1 s).
+    """Distance by speed and heading minus the displacement of the position, over H horizons (1 s).
 
-    Min et al. 2021 look for jammed positions with a network (section 2.2); a frozen position leaves all of it missing.
+    Min et al. 2021 look for jammed positions with a network (section 2.2); a frozen position misses all of it.
     Speed and course are freed of the receiver's lag by the inertial unit, where there is one, and held for a second.
     Only trusted fixes become references, so under a long fault the reference grows old and `law` allows more: the
     variance is law . (1, swing^2, path^2, age^2). After `afresh_s` without a trusted fix it begins anew, and so it does

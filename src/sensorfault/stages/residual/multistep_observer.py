@@ -36,12 +36,12 @@ class _Work(NamedTuple):
 
 
 class MultistepObserver(eqx.Module):
-    """r_N(k) = h(k) - ĥ_N(k), with ĥ rolled out from h(k-N) by N steps that feed back the height they foretold, and the
-    measured inputs. Wang et al., equations (2)-(7); N = 1 is the conventional observer.
+    """r_N(k) = h(k) - ĥ_N(k), with ĥ rolled out from h(k-N) by N steps that feed back their predicted height, and
+    the measured inputs. Wang et al., equations (2)-(7); N = 1 is the conventional observer.
 
     A step leads from one new height to the next. All members of a bank of several N are one computation; their
-    residuals stand in `extra`. A height that was not trusted is no starting point: what was expected in its place
-    takes its place, for as long as the monitor fills it in. What is expected of the channel is the roll-out of the
+    residuals stand in `extra`. A height that was not trusted is no starting point: the expected one takes its place,
+    for as long as the monitor fills it in. What is expected of the channel is the roll-out of the
     longest member that is ready, which a slow drift has touched least, and from there on, while nothing is trusted,
     what follows from that. Its variance grows with the time since the height that it was rolled out from.
 

@@ -1,4 +1,4 @@
-"""Online network residual: new measurements minus what a network foretold that goes on learning while it watches."""
+"""Online network residual: new measurements minus the prediction of a network that learns while it runs."""
 
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ class _State(NamedTuple):
     known: Float[Array, " D"]  # rows of the window since the output came (again), m at most
     received: Float[Array, ""]  # rows since all inputs came (again), n + 1 at most
     clean: Float[Array, ""]  # rows since all outputs were taken at their word (again), m at most
-    quiet: Float[Array, ""]  # learned samples in a row that were foretold well, `warm` at most
+    quiet: Float[Array, ""]  # learned samples in a row that were predicted well, `warm` at most
     time: Float[Array, ""]  # of y(k) [s]
 
 
@@ -36,13 +36,13 @@ class _Work(NamedTuple):
 class OnlineNetwork(eqx.Module):
     """y~(k+1) = F(y(k) .. y(k-m+1), u(k+1) .. u(k-n+1)), learned one sample at a time. Niu & Zhao 1998, equation (1).
 
-    F is an Mlp of one hidden layer; it foretells y(k+1) - y(k) in units of `step`, or with `absolute` y(k+1) itself.
-    It sees y(k) and u on [-1, 1], and what lies before y(k) as increments: of two rows that are nearly the same a
-    network sees the difference only if it is told.
+    F is an Mlp of one hidden layer; it predicts y(k+1) - y(k) in units of `step`, or with `absolute` y(k+1) itself.
+    It sees y(k) and u on [-1, 1], and what lies before y(k) as increments: two rows are
+    nearly the same, so the network sees their difference only as an input of its own.
 
     An output is valid where its own window and the inputs are whole, without a gap in the clock of more than `gap_s`.
     It is learned where the monitor allows it, from windows that were measured throughout. Before `warm` samples in a
-    row have been foretold within `settled` nothing is valid, and what is measured is learned unjudged.
+    row have been predicted within `settled` nothing is valid, and what is measured is learned unjudged.
     """
 
     network: Mlp  # to begin with
@@ -111,7 +111,7 @@ class OnlineNetwork(eqx.Module):
         m, n = self.delays
         measured, filled = picked(trust.measured, self.columns), picked(trust.filled, self.columns)
         d = len(self.columns)
-        # Of an output that is not there the others must still know something: what was foretold, within its range.
+        # A missing output is still an input of the others: its prediction stands in, within its range.
         predicted = jnp.clip(expected, self.center[:d] - self.half[:d], self.center[:d] + self.half[:d])
         y = jnp.where(measured | filled, picked(trust.value, self.columns), predicted)
         target, teaches = self.lesson(pending, trust)
@@ -131,7 +131,7 @@ class OnlineNetwork(eqx.Module):
         )
 
     def lesson(self, pending: _Work, trust: Trust) -> tuple[Float[Array, " D"], Bool[Array, " D"]]:
-        """What the network should have said to `pending.x`, and of which outputs it may be told."""
+        """What the network should have answered to `pending.x`, and the outputs it may learn."""
         state = pending.state
         m, n = self.delays
         origin, unit = self._origin(state)

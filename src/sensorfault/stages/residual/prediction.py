@@ -1,4 +1,4 @@
-"""Prediction residual: a new measurement minus what a network foretold from the window of samples before it."""
+"""Prediction residual: a new measurement minus a network's prediction from the window of samples before it."""
 
 from typing import NamedTuple
 

@@ -23,7 +23,7 @@ class Reconstruction(eqx.Module):
 
     `expected[k]` is the reconstruction of channel k from a sample in which x_k alone is exchanged for its last trusted
     value, since a copy of a faulty value is no stand-in for it. `extra[k]` is the whole residual of that sample: what
-    would be left if k were the culprit (after the reconstruction-based contributions of Alcala & Qin 2009).
+    would be left if k were the faulty one (after the reconstruction-based contributions of Alcala & Qin 2009).
     """
 
     weights: Float[Array, "L C"]  # w

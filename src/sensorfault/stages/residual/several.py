@@ -16,7 +16,7 @@ class _Work(NamedTuple):
 
 
 class Several(eqx.Module):
-    """The parts' residuals, all of them in `extra`; a statistic is made for one of them by statistic/of.py.
+    """The parts' residuals, all of them in `extra`; statistic/select_residual.py makes a statistic for one of them.
 
     `answers[p, c]`: part p gives channel c its residual, expected value and variance; at most one part a channel. A
     channel that no part answers for is never valid.

@@ -80,7 +80,7 @@ def sight_lines(
 def clock_jump(
     prior: Belief, lines: Lines, z: Float[Array, " C"], satellites: int
 ) -> tuple[Belief, Float[Array, " C"]]:
-    """If every pseudorange is far off, so is the clock: by as much as the one that is least. What is left of z."""
+    """If every pseudorange is far off, the clock is off by the smallest of them. Returns what is left of z."""
     ranges, there = z[:satellites], lines.there[:satellites]
     rows = lines.rows[:satellites]
     s = ((rows[:, None] * prior.cov[None]).sum(axis=2) * rows).sum(axis=1) + lines.variance[:satellites]

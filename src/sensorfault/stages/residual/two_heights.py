@@ -1,4 +1,4 @@
-"""Two heights of one vehicle: each expected where the other one says, by what they lately differed."""
+"""Two heights of one vehicle: each expected where the other one is, plus their recent difference."""
 
 from typing import NamedTuple
 

@@ -44,12 +44,13 @@ class _Work(NamedTuple):
 
 
 class VelocityDeficit(eqx.Module):
-    """A complementary filter: the inertial unit turns and pushes the velocity, which forgets itself within `memory_s`.
+    """A complementary filter: the inertial unit turns and pushes the velocity, which is forgotten within `memory_s`.
 
     So slopes and biases, which last, are forgotten, and a receiver that freezes as a whole is seen as far as the car
-    turns or changes its speed within that time. Trusted velocities alone lead it; `afresh_s` after the last of them it
-    begins anew, and so it does when a velocity moves on that was stuck for longer than HOLD_S and led it meanwhile.
-    Below SLOWEST, and while the inertial unit itself is distrusted, it is led by the receiver and nothing is compared.
+    turns or changes its speed within that time. Only trusted velocities correct it; `afresh_s` after the last of them
+    it begins anew, and so it does when a velocity moves on that was stuck for longer than HOLD_S and corrected it
+    meanwhile. Below SLOWEST, and while the inertial unit itself is distrusted, it follows the receiver and nothing is
+    compared.
     """
 
     memory_s: Float[Array, ""]
@@ -95,7 +96,7 @@ class VelocityDeficit(eqx.Module):
         lost = work.new & (since > self.afresh_s)
         unit = self.inertial.trusted(trust, work.fresh)
         led = lost | (believed & (work.baarda_w | ~unit | (jnp.linalg.norm(result) < SLOWEST)))
-        # v <- v + (1 - exp(-dt / T)) (told - v)
+        # v <- v + (1 - exp(-dt / T)) (measured - v)
         gain = jnp.where(led, 1.0, jnp.where(believed, 1 - jnp.exp(-jnp.clip(since, 0.0, HOLD_S) / self.memory_s), 0.0))
         return state._replace(
             rates=jnp.where(unit, work.rates, state.rates),

@@ -1,4 +1,4 @@
-"""Who lies, of several that should agree: named only if nobody else can explain who disagrees with whom."""
+"""Which of several sensors that should agree is faulty: named only if no other explains all disagreements."""
 
 from typing import NamedTuple
 
@@ -31,16 +31,16 @@ class _Work(NamedTuple):
 class Agreement(eqx.Module):
     """|gap| / (limit growth) of each two witnesses of one height: of a jump, and of a drift over a minute.
 
-    Heights are compared with each other and with what vertical speeds add up to, each time the first witness speaks,
-    and averaged over beats of `beat_s`: numerics/apart.py. (Wang et al. watch windows of 3 s, in which a drift of
-    0.1 m/s is 0.3 m; over a minute it is 5 m.) While either of a pair is under suspicion its references stay; after
-    `afresh_s` all is forgotten, else a witness set anew would be accused for ever. A vertical speed is never without a
-    bias: what it adds up to may be off by the more the older the reference is, and begins anew after a long doubt.
+    Heights are compared with each other and with what vertical speeds add up to, each time the first witness is new,
+    and averaged over beats of `beat_s`: numerics/pairwise_difference.py. (Wang et al. watch windows of 3 s, in which a
+    drift of 0.1 m/s is 0.3 m; over a minute it is 5 m.) While either of a pair is under suspicion its references stay;
+    after `afresh_s` all is forgotten, else a witness set anew would be accused for ever. A vertical speed always has a
+    bias: its sum may be off by more the older the reference is, and begins anew after a long doubt.
 
     A sensor is accused if it takes part in every disagreement and no other sensor does. Two of one sensor that disagree
-    accuse it, whatever others say; two sensors of which no third knows more stay unaccused: something is wrong, unknown
-    which. Of the accused sensor those channels are named that take part in every disagreement, or, if none does, all
-    that take part in one. For residual/two_heights.py.
+    accuse it, whatever others say; two sensors that disagree while no third can decide stay unaccused: the sample is at
+    fault, unknown which. Of the accused sensor those channels are named that take part in every disagreement, or, if
+    none does, all that take part in one. For residual/two_heights.py.
     """
 
     limit: Float[Array, "2 P"]  # [m]
@@ -61,7 +61,7 @@ class Agreement(eqx.Module):
     def evaluate(self, state: _State, residual: Residual) -> tuple[Score, _Work]:
         fresh, present = residual.extra
         now = residual.time
-        state, height, there = self._heard(state, residual)
+        state, height, there = self._received(state, residual)
         i, j = self._sides()
         lead = fresh[self.columns[0]]
         memory = state.memory.received(there[i] & there[j] & lead, height[i] - height[j])
@@ -90,7 +90,7 @@ class Agreement(eqx.Module):
 
     def update(self, work: _Work, trust: Trust) -> _State:
         memory = work.state.memory
-        # A height that is kept out, or that disagrees, is in doubt until it is heard without. A vertical speed is not:
+        # A height that is kept out, or that disagrees, is in doubt until it agrees again. A vertical speed is not:
         # what it has added up to stays wrong after it is right again.
         new = picked(work.fresh, self.columns)
         bad = (work.suspect | (new & ~picked(trust.measured, self.columns))) & (self.upward == 0)
@@ -119,8 +119,8 @@ class Agreement(eqx.Module):
         i, j = self._sides()
         return (self.upward[i] != 0) | (self.upward[j] != 0)
 
-    def _heard(self, state: _State, residual: Residual) -> tuple[_State, Float[Array, " W"], Bool[Array, " W"]]:
-        """With what each witness says now: a height, or what its speed has added up to [m]."""
+    def _received(self, state: _State, residual: Residual) -> tuple[_State, Float[Array, " W"], Bool[Array, " W"]]:
+        """With what each witness measures now: a height, or the sum of its speed [m]."""
         now = residual.time
         value, fresh, present, born = (
             picked(x, self.columns)

@@ -1,4 +1,4 @@
-"""Averaged innovation (AIME): what many innovations say together that none says alone."""
+"""Averaged innovation (AIME): many innovations together show what none shows alone."""
 
 import equinox as eqx
 import jax.numpy as jnp

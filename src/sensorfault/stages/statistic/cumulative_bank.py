@@ -12,8 +12,8 @@ from sensorfault.stages.statistic.per_channel import each
 class CumulativeBank(eqx.Module):
     """max over windows of |mean normalised innovation| / its healthy spread: one test a channel.
 
-    The spreads are those of healthy data, so noise that lasts as long as a window has its price, which white noise as
-    the averaged innovation presumes it has not.
+    The spreads are those of healthy data, so correlated noise raises them; the averaged innovation presumes white
+    noise.
     """
 
     means: Means

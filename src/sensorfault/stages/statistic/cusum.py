@@ -20,7 +20,7 @@ class Cusum(eqx.Module):
     """max(g⁺, g⁻) of each channel, g± = max(0, g± ± e/√S - k). Page 1954.
 
     `allowance` k: half the offset that is to be found, in standard deviations. A sum is evidence, so it takes every
-    valid sample; it stops at `ceiling`, lest a long fault be on its account long after it is over. It begins anew when
+    valid sample; it stops at `ceiling`, so that a long fault does not alarm long after its end. It begins anew when
     its channel was not valid for longer than `gap_s` or carries another source.
     """
 

@@ -11,10 +11,10 @@ from sensorfault.stages.statistic.per_channel import each
 
 
 class DoubleThreshold(eqx.Module):
-    """M > `high`, or M > `low` and the network foretells an error beyond `wrong`; the score is over 1 then.
+    """M > `high`, or M > `low` and the network predicts an error beyond `wrong`; the score is over 1 then.
 
     M is the innovation in its standard deviations. The network's window is the last `window` of a channel, taken in or
-    not: what a slow fault hides from one of them shows in several. A reading of the test that Xu et al. 2023 compare
+    not: a slow fault shows in several that no single one shows. A reading of the test that Xu et al. 2023 compare
     with (Zhao et al., Control and Decision 35(6), 2020), whose text we do not have.
     """
 

@@ -12,7 +12,7 @@ class Exchange(eqx.Module):
 
     Needs `residual.extra[k]`, the residual left when channel k is exchanged for a trusted value. Blame is the share of
     the squared norm that the exchange takes away: a network smears a fault over its neighbours, so the largest residual
-    is not always the culprit's. Once a channel is out, the others are judged by what is left without it.
+    is not always that of the faulty channel. Once a channel is out, the others are judged by what is left without it.
     """
 
     scale: Float[Array, " C"]  # [SI]
@@ -25,7 +25,7 @@ class Exchange(eqx.Module):
         out = jnp.asarray(residual.out)
         e = jnp.where(valid, residual.value / self.scale, 0.0)
         e_k = jnp.where(valid[None], residual.extra / self.scale[None], 0.0)  # [k, channel]
-        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, lest a wild value overflow
+        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, against overflow
         without = ((e_k / largest) ** 2).sum(axis=1)
         total = jnp.where(out.any(), jnp.where(out, without, jnp.inf).min(), ((e / largest) ** 2).sum())
         taken = jnp.where(valid, jnp.maximum(total - without, 0.0), 0.0)

@@ -1,4 +1,4 @@
-"""What models make of the features of innovations: what the statistics share that learn from labelled ones."""
+"""Models of the features of innovations: shared by the statistics that learn from labelled data."""
 
 from collections.abc import Callable, Sequence
 
@@ -17,8 +17,8 @@ def featured(
 ) -> Score:
     """One test a channel; those without a model are never valid.
 
-    Nor is one whose innovation has a larger variance than `widest`: such a filter was not learned from, and one that
-    has lost its way would take its own error for the measurement's, for ever.
+    Nor is one whose innovation has a larger variance than `widest`: the models saw no such filter in training, and a
+    lost filter would take its own error for the measurement's, for ever.
     """
     own = jnp.eye(residual.value.size)
     value = jnp.where(residual.valid, residual.value, 0.0)

@@ -1,4 +1,4 @@
-"""The error of a measurement, foretold by fuzzy rules from what its innovation looks like: one test a channel."""
+"""The error of a measurement, predicted by fuzzy rules from its innovation: one test a channel."""
 
 import equinox as eqx
 from jaxtyping import Array, Float

@@ -1,4 +1,4 @@
-"""The side force that a car should not feel, through a low pass that a bump of the road does not survive."""
+"""The side force that a car should not feel, through a low pass that removes bumps of the road."""
 
 from typing import NamedTuple
 

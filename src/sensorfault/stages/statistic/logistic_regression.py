@@ -9,7 +9,7 @@ from sensorfault.stages.statistic.featured import featured
 
 
 class LogisticRegression(eqx.Module):
-    """Log odds of |r|, M² and R* for each measurement: the plain twin of FuzzyInference. More likely than not: above 0.
+    """Log odds of |r|, M² and R* for each measurement: FuzzyInference made linear. Above 0: more likely wrong.
 
     `columns[j]`: the channel that model j judges, as long as its innovation's variance is no more than `widest[j]`
     [m²]; the tests of the others are never valid.

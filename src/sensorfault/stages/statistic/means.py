@@ -12,10 +12,10 @@ from sensorfault.stages.statistic.past import Past
 class Means(eqx.Module):
     """For each window the mean of z_i / √S_ii over its last `length_s` seconds, in units of its healthy `spread`.
 
-    What comes less than `spacing_s` apart shares a block. A window that is not yet full counts what it lacks as nought:
-    so one innovation does not weigh like thirty, and a satellite is judged from its first on. Missing epochs within a
-    window are left out. A channel that was not valid for longer than `gap_s`, or now carries another source, begins
-    anew.
+    What comes less than `spacing_s` apart shares a block. A window that is not yet full counts what it lacks as zero,
+    so that one innovation does not weigh like thirty, and a satellite is judged from its first on. Missing epochs
+    within a window are left out. A channel that was not valid for longer than `gap_s`, or now carries another source,
+    begins anew.
     """
 
     length_s: Float[Array, " W"]

@@ -20,7 +20,7 @@ class Norm(eqx.Module):
 
     def evaluate(self, state: tuple[()], residual: Residual) -> tuple[Score, tuple[()]]:
         e = jnp.where(residual.valid, residual.value / self.scale, 0.0)
-        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, lest a wild value overflow
+        largest = jnp.maximum(jnp.abs(e).max(), 1e-300)  # taken out before squaring, against overflow
         square = (e / largest) ** 2
         total = square.sum()
         score = Score(

@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.core.types import NEVER, Residual, Score, Trust
 from sensorfault.numerics.moments import Moments, joined, nothing, together
 
-WILDEST = 30.0  # standard deviations; what lies farther out counts as so far, lest fourth powers drown the rest
+WILDEST = 30.0  # standard deviations; what lies farther out counts as this, so that fourth powers hide no others
 
 
 class _Window(NamedTuple):
@@ -22,7 +22,7 @@ class _Window(NamedTuple):
 
 
 class Normality(eqx.Module):
-    """Three tests for each watched channel, on the last `window_s`: is what it says of e / √S normal, centred, as wide?
+    """Three tests for each watched channel, on the last `window_s`: is e / √S normal, centred, as wide as when healthy?
 
     JB = n/6 (S² + (K - 3)²/4), Min et al. 2021, equations (24)-(26); √n |mean| / σ; √(n/2) ln(variance / σ²), where
     above 0 (a car at rest is measured better than one under way, which is no fault). JB does not change under a

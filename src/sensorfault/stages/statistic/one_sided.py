@@ -10,8 +10,8 @@ from sensorfault.stages.statistic.per_channel import each
 class OneSided(eqx.Module):
     """r_i / √S_ii, signed: one test a channel, one-sided.
 
-    For pseudoranges in a town: a signal that came by a detour is too long, never too short. Where most signals do, the
-    filter believes in between, and a test of both sides throws out those that came straight.
+    For pseudoranges in a town: a signal that came by a detour is too long, never too short. Where most signals do,
+    the filter's position lies between, and a two-sided test rejects those that came straight.
     """
 
     def init(self) -> tuple[()]:

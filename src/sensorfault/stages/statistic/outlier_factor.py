@@ -1,4 +1,4 @@
-"""Local outlier factor of each innovation against a history of healthy ones, which no distribution is presumed of."""
+"""Local outlier factor of each innovation against a history of healthy ones, without a presumed distribution."""
 
 import equinox as eqx
 import jax.numpy as jnp

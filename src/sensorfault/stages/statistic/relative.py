@@ -1,4 +1,4 @@
-"""A score against what it has lately been: a rough road is not a fault, and a smooth one hides none."""
+"""A score against its recent size, so that a rough road is no fault and a smooth one hides none."""
 
 from typing import Any, NamedTuple
 
@@ -24,9 +24,9 @@ class _Work(NamedTuple):
 class Relative(eqx.Module):
     """score / rms of the score over about `memory` healthy samples, each test by itself.
 
-    The rms is a reference, so only trusted samples teach it, and it stays within `lowest` and `highest`, which healthy
-    data had: beyond, the test is as one without it. While nothing may be learned it relaxes towards `highest`, so that
-    a roughness which came at once is no alarm for ever.
+    The rms is a reference, so it learns from trusted samples only, and it stays within `lowest` and `highest`, which
+    healthy data had: beyond, the test is as one without it. While nothing may be learned it relaxes towards `highest`,
+    so that a sudden roughness does not alarm for ever.
     """
 
     statistic: Stage[Any, Residual, Score, Any]

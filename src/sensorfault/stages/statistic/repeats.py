@@ -18,7 +18,7 @@ class _Run(NamedTuple):
 class Repeats(eqx.Module):
     """Length of the current run of identical measurements, one test a channel.
 
-    A noisy sensor that repeats itself for long is jammed. Held values are not new measurements and do not count.
+    A noisy sensor that repeats itself for long is frozen. Held values are not new measurements and do not count.
     """
 
     channels: int = eqx.field(static=True)

@@ -22,7 +22,7 @@ class Shortfall(eqx.Module):
     For residual/motion_deficit.py.
 
     With times = 2: by how much more than half of the way is missing. Judged between fixes as they came, trusted or not
-    (evidence, not reference), so a jam is seen for as long as it lasts and is over with its end. It knows no heading.
+    (evidence, not reference), so a frozen position is seen for as long as it lasts, and no longer. It needs no heading.
     """
 
     horizon_s: Float[Array, ""]

@@ -1,4 +1,4 @@
-"""The velocity against the inertial unit, along and across: two tests, each accusing what it would take to be wrong."""
+"""The velocity against the inertial unit, along and across: two tests, each accusing what could cause it."""
 
 import equinox as eqx
 import jax.numpy as jnp

@@ -12,8 +12,8 @@ from sensorfault.core.types import Residual, Score, Trust
 class Standardised(eqx.Module):
     """(∛(q/m) - (1 - 2/(9m))) / √(2/(9m)) of a score √q that covers m channels. Wilson & Hilferty 1931.
 
-    What healthy data say of nine satellites then holds for six. It is approximate: far out it says a little less than
-    the tail of χ² (3.65 for 3.71 at m = 5, 4.06 for 4.26 at m = 1). threshold/chi_square.py has the exact limits.
+    A limit from healthy data of nine satellites then holds for six. It is approximate: far out it says a little less
+    than the tail of χ² (3.65 for 3.71 at m = 5, 4.06 for 4.26 at m = 1). threshold/chi_square.py has the exact limits.
     """
 
     statistic: Stage[Any, Residual, Score, Any]

@@ -28,7 +28,7 @@ class Whitened(eqx.Module):
         for group in self.groups:
             there = jnp.stack([residual.valid[c] for c in group])
             w = jnp.abs(_whitened(residual, group, there))
-            largest = jnp.maximum(w.max(), 1e-300)  # taken out before squaring, lest a wild value overflow
+            largest = jnp.maximum(w.max(), 1e-300)  # taken out before squaring, against overflow
             values.append(largest * jnp.sqrt(((w / largest) ** 2).sum()) if self.joint else w.max())
             valid.append(there.any())
             mine = [(jnp.arange(self.channels) == c) & there[i] for i, c in enumerate(group)]
@@ -41,7 +41,7 @@ class Whitened(eqx.Module):
 
 
 def _whitened(residual: Residual, group: tuple[int, ...], there: Bool[Array, " G"]) -> Float[Array, " G"]:
-    """L⁻¹ e row by row; a component that is not there is nought and touches no other."""
+    """L⁻¹ e row by row; a component that is not there is zero and touches no other."""
     sigma = [jnp.sqrt(residual.cov[c, c]) for c in group]
     lower: list[list[Float[Array, ""]]] = []
     w: list[Float[Array, ""]] = []

@@ -1,4 +1,4 @@
-"""What a companion filter and the recent past allow: the adaptive limit of the multi-step observer."""
+"""The adaptive limit of the multi-step observer, from a companion filter and recent residuals."""
 
 from typing import NamedTuple
 

@@ -10,7 +10,7 @@ from sensorfault.core.types import Residual, Score, Trust
 class ChiSquare(eqx.Module):
     """√χ²(m) at a false-alarm rate, m the channels that the test covers: satellites come and go. Of a score √q.
 
-    `limit[m - 1]` is the limit for m, of training/chi_square.py. Without a channel there is nothing to limit.
+    `limit[m - 1]` is the limit for m, of calibration/chi_square.py. Without a channel there is nothing to limit.
     """
 
     limit: Float[Array, " C"]

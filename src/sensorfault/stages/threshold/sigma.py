@@ -9,7 +9,7 @@ from sensorfault.core.types import Residual, Score, Trust
 class Sigma(eqx.Module):
     """theta_i = Delta_i + 3 sigma_i with Delta_i = rho_i dt, one test a channel. Niu & Zhao 1998, section 2.
 
-    Printed for Delta, the largest error of a prediction, is its bound: rho the largest slope of the output itself.
+    The paper bounds Delta, the largest error of a prediction, by rho, the largest slope of the output itself.
     """
 
     rho: Float[Array, " K"]  # the fastest that the output, or the error of its prediction, moves [SI/s]
@@ -26,6 +26,6 @@ class Sigma(eqx.Module):
         return ()
 
     def limit(self) -> Float[Array, " K"]:
-        """theta, which nothing that is seen changes."""
+        """theta, which no sample changes."""
         # theta_i = rho_i dt + 3 sigma_i
         return self.rho * self.tick_s + 3 * self.sigma
