@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jax import lax
 
@@ -41,10 +42,15 @@ def _walk(monitor: Monitor, state: MonitorState, rows: Sample) -> Walk:
     return lax.scan(one, state, rows)[1]
 
 
+def strong(tree):
+    """The same arrays without weak types."""
+    return jax.tree.map(lambda x: jnp.asarray(np.asarray(x)) if isinstance(x, jax.Array) else x, tree)
+
+
 def walk(monitor: Monitor, rows: Sample, state: MonitorState | None = None) -> Walk:
     """Numbers go in without weak types, which would compile the same monitor again once it was saved and loaded."""
-    monitor = jax.tree.map(lambda x: np.asarray(x) if isinstance(x, jax.Array) else x, monitor)
-    walked: Walk = _walk(monitor, monitor.init() if state is None else state, rows)
+    monitor = strong(monitor)
+    walked: Walk = _walk(monitor, strong(monitor.init() if state is None else state), rows)
     return jax.tree.map(np.asarray, walked)
 
 
