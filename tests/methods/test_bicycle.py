@@ -75,7 +75,7 @@ def test_a_wheelbase_of_nothing() -> None:
     with pytest.raises(LogError, match="wheelbase_m is 0; it must be positive"):
         bicycle_kalman("bicycle-kalman", replace(log(), wheelbase_m=0.0))
     text = "[vehicle]\nname = 'car'\nwheelbase_m = 0.0\n[file.log]\n[sensor.a.channel]\nx = { column = 'x' }\n"
-    with pytest.raises(LogError, match=r"wheelbase_m = 0 is none"):
+    with pytest.raises(LogError, match=r"wheelbase_m = 0 must be positive"):
         VehicleFile.parse(text)
     there = VehicleFile.parse(text.replace("0.0", "2.65\nsteering_ratio = 14.5"))
     assert (there.wheelbase_m, there.steering_ratio) == (2.65, 14.5)

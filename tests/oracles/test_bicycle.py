@@ -38,7 +38,7 @@ def filter_of(polar: bool, steered: bool = False, **changed) -> BicycleKalman:
         "smooth_s": jnp.asarray(0.2),
         "late_s": jnp.asarray(LATE),
         "speed_scale": jnp.asarray(1.02),
-        "offset": jnp.asarray([0.002, 0.1]),
+        "bias": jnp.asarray([0.002, 0.1]),
         "bias_spread": jnp.asarray([0.005, 0.3]),
         "channels": first + (4 if steered else 6),
     }

@@ -97,7 +97,7 @@ def test_a_history_is_drawn_by_its_seed_and_knows_what_it_needs() -> None:
     assert np.isin(one.points, seen).all()
     np.testing.assert_array_equal(one.points, same.points)
     assert not np.array_equal(one.points, other.points)
-    with pytest.raises(LogError, match="20 healthy innovations are no history for 20 neighbours"):
+    with pytest.raises(LogError, match="20 healthy innovations are too few for 20 neighbours"):
         fit_history(seen[:30], 0)
 
 

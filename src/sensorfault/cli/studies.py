@@ -4,7 +4,7 @@ An entry point names a study, several of them, or a function that returns either
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import entry_points
 from typing import Any, Protocol, runtime_checkable
 
 from sensorfault.core.extras import MissingLibrary, sentence_of_missing
@@ -39,6 +39,18 @@ class Reproduction(Protocol):
 
 
 @runtime_checkable
+class Point(Protocol):
+    """What is asked of an entry point."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> str: ...
+    @property
+    def dist(self) -> Any: ...
+    def load(self) -> Any: ...
+
+
 @runtime_checkable
 class Study(Protocol):
     """The experiments of one paper. `tell` is called with what is being done and the share that is done, 0 to 1."""
@@ -80,7 +92,7 @@ def _missing(error: BaseException | None) -> str | None:
     return None
 
 
-def _given(point: EntryPoint) -> list[Study]:
+def _given(point: Point) -> list[Study]:
     try:
         given = point.load()
         given = given() if callable(given) and not isinstance(given, Study) else given
@@ -97,7 +109,7 @@ def _given(point: EntryPoint) -> list[Study]:
     return studies
 
 
-def _words(point: EntryPoint) -> str:
+def _words(point: Point) -> str:
     """The entry point, as a sentence names it."""
     package = f" of {point.dist.name}" if point.dist is not None else ""
     return f"the entry point {point.name} = {point.value}{package}"
