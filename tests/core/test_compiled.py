@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sensorfault.core.compiled import VARIABLE, Programs, Unusable, folder, machine
+from sensorfault.core.compiled import OWN, VARIABLE, Programs, Unusable, folder, machine
 
 PROGRAM = """
 import sensorfault.core._jax
@@ -89,7 +89,7 @@ def test_where_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(VARIABLE, "off")
     assert folder() is None
     monkeypatch.setenv(VARIABLE, str(tmp_path))
-    assert folder() == tmp_path
+    assert folder() == tmp_path / OWN
     monkeypatch.delenv(VARIABLE)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     found = folder()
@@ -110,16 +110,16 @@ def run(**environment: str) -> tuple[int, str, str]:
 
 
 def test_answers_are_the_same_to_the_bit_and_damage_is_not_noticed(tmp_path: Path) -> None:
-    home = tmp_path / "compiled"
+    home = tmp_path / OWN
     without = run(**{VARIABLE: "off"})
-    first, second = (run(**{VARIABLE: str(home)}) for _ in range(2))
+    first, second = (run(**{VARIABLE: str(tmp_path)}) for _ in range(2))
     assert without[0] == first[0] == 0 < second[0]
     assert without[1] == first[1] == second[1]
     for file in home.iterdir():
         file.write_bytes(file.read_bytes()[:100])
-    third = run(**{VARIABLE: str(home)})
+    third = run(**{VARIABLE: str(tmp_path)})
     assert third == (0, without[1], first[2])
-    assert run(**{VARIABLE: str(home)})[0] == second[0]
+    assert run(**{VARIABLE: str(tmp_path)})[0] == second[0]
 
 
 def test_a_program_that_keeps_its_own_is_left_alone(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 VARIABLE = "SENSORFAULT_CACHE"
 MOST_BYTES = 256 << 20  # then the entries unused for longest go, down to KEPT of it
 KEPT = 0.8
+OWN = "sensorfault-compiled"  # inside a folder that the user chose, whose rights are not ours to change
 _ENDING = ".xla"
 _DIGEST = hashlib.sha256().digest_size
 
@@ -26,7 +27,7 @@ def folder() -> Path | None:
     if chosen.lower() in ("off", "0", "no", "false"):
         return None
     if chosen and chosen.lower() not in ("on", "1", "yes", "true"):
-        return Path(chosen).expanduser()
+        return Path(chosen).expanduser() / OWN
     from platformdirs import user_cache_path
 
     return user_cache_path("sensorfault") / "compiled"
@@ -99,7 +100,7 @@ class Programs:
         if len(program) > self.most_bytes:
             return
         with suppress(OSError):
-            handle, name = tempfile.mkstemp(dir=self.home, suffix=".part")  # mode 0600
+            handle, name = tempfile.mkstemp(dir=self.home, suffix=f"{_ENDING}.part")  # mode 0600
             try:
                 with os.fdopen(handle, "wb") as file:
                     file.write(_digest(key, program) + program)
@@ -115,7 +116,7 @@ class Programs:
         with suppress(OSError):
             for entry in os.scandir(self.home):
                 with suppress(OSError):
-                    if entry.name.endswith((_ENDING, ".part")):
+                    if entry.name.endswith((_ENDING, f"{_ENDING}.part")):
                         about = entry.stat(follow_symlinks=False)
                         found[Path(entry.path)] = about.st_mtime, about.st_size
         return found
