@@ -9,6 +9,7 @@ import polars as pl
 from jaxtyping import Float
 
 from sensorfault.logs.clock import Clock
+from sensorfault.logs.guess.dotted import are_dotted, device_of, meaning_of
 from sensorfault.logs.guess.words import Meaning, read_name
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
@@ -31,6 +32,7 @@ class Column:
     name: str
     meaning: Meaning
     value: Float[np.ndarray, " T"]
+    device: str = ""  # the sensor, where the name of the column says it
 
 
 def measurements(
@@ -43,12 +45,12 @@ def measurements(
     """
     columns, left_out = [], []
     beacons = beacons_of([read_name(name) for name in source.frame.columns])
+    dotted = fields is None and are_dotted(source.frame.columns)
     for name in source.frame.columns:
         if name == time:
             continue
-        meaning = (
-            read_name(name, source.units.get(name, ""), source.frame.columns) if fields is None else fields.get(name)
-        )
+        device = device_of(name) if dotted else ""
+        meaning = _meaning(source, name, fields) if not device else meaning_of(name)
         if meaning is None:
             left_out.append((name, NO_SENSOR))
         elif meaning.kind == "time":
@@ -64,14 +66,20 @@ def measurements(
                     raise  # a measurement with a cell that is none, not a column of words
                 left_out.append((name, "holds text"))
                 continue
-            column = Column(name, meaning, np.where(np.isinf(value), np.nan, value))
-            reason = _no_measurement(column, meaning.stem in beacons)
+            column = Column(name, meaning, np.where(np.isinf(value), np.nan, value), device)
+            reason = _no_measurement(column, (device or meaning.stem) in beacons)
             if reason:
                 left_out.append((name, reason))
             else:
                 columns.append(column)
     headerless = bool(columns) and all(re.fullmatch(r"c\d+", column.name) for column in columns)
     return _by_value(columns) if headerless else columns, left_out
+
+
+def _meaning(source: Source, name: str, fields: Mapping[str, Meaning] | None) -> Meaning | None:
+    if fields is not None:
+        return fields.get(name)
+    return read_name(name, source.units.get(name, ""), source.frame.columns)
 
 
 def beacons_of(meanings: Iterable[Meaning]) -> set[str]:

@@ -19,6 +19,7 @@ _UNWATCHED = {
     "height": "a height is not stationary: only dropouts are detected",
     "depth": "a depth is not stationary: only dropouts are detected",
     "heading": "an angle that wraps: only dropouts are detected",
+    "satellite": "raw data of a satellite: judged as an epoch, not by themselves",
     "quaternion": "a quaternion is not stationary: only dropouts are detected",
 }
 _USUAL_UNIT = {
@@ -40,7 +41,7 @@ def guess_sensors(source: Source, columns: Sequence[Column], clock: Clock) -> li
     place = _place_rad(own)
     parts: dict[str, list[Column]] = {}
     for column in columns:
-        name = column.meaning.stem if column.name in theirs else _part(column, own, has_position)
+        name = column.device or (column.meaning.stem if column.name in theirs else _part(column, own, has_position))
         parts.setdefault(name, []).append(column)
     return [_sensor(device, clock, place) for device in find_devices(parts, source, clock)]
 

@@ -1,0 +1,1 @@
+"""The default method: what one sensor says, checked against what the others say. No JAX here."""

@@ -1,0 +1,193 @@
+"""Which axes an inertial unit has: found from turns, gravity and course, before anything is compared.
+
+Inside, a vehicle's axes are forward, right, down, and an accelerometer at rest reads -g on down.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import permutations, product
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.relations.grid import GRAVITY, Grid, integrated, unwrapped
+from sensorfault.relations.signals import Signal
+
+TURN_RAD = 0.35  # all turns together must be at least this, else they decide nothing
+MARGIN = 1.5  # the best mounting must explain the turns this much better than the next one
+CLIP_RAD, ALIKE = 0.3, 0.4  # a turn counts no more than this; how alike turns by gyro and by course must be
+RATE_S = 1.0  # turns are compared over steps of this
+INERTIAL = ("gyro", "accelerometer", "magnetometer")
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """The axes of one inertial unit.
+
+    `turn`: rotation to forward, right, down; None if undecided. `gravity`: -1 where the accelerometer has the sign of
+    gravity. `forward`: whether the forward axis is known, not only the vertical one. `why`: what was lacking.
+    """
+
+    turn: Float[np.ndarray, "3 3"] | None
+    gravity: float = 1.0
+    forward: bool = True
+    why: str = ""
+
+
+def _rotations() -> list[Float[np.ndarray, "3 3"]]:
+    """The 24 ways to mount a box along the vehicle's axes."""
+    found = []
+    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
+        turn = np.zeros((3, 3))
+        turn[range(3), order] = signs
+        if np.linalg.det(turn) > 0:
+            found.append(turn)
+    return found
+
+
+ROTATIONS = _rotations()
+
+
+def mounted(signals: dict[str, Signal], known: dict[str, Mounting] | None = None) -> tuple[dict[str, Signal], dict[str, Mounting]]:
+    """The signals with every inertial unit turned to forward, right, down, and how each was mounted.
+
+    `known`: mountings that a model stores; they are taken as they are.
+    """
+    mountings: dict[str, Mounting] = {}
+    turned = dict(signals)
+    numbers = dict.fromkeys(key.removeprefix(role) for key, s in signals.items() for role in INERTIAL if s.role == role)
+    for number in numbers:
+        gyro, acc = signals.get(f"gyro{number}"), signals.get(f"accelerometer{number}")
+        mounting = (known or {}).get(number) or _mounting(signals, gyro, acc, mountings.get(""))
+        mountings[number] = mounting
+        for role in INERTIAL:
+            signal = signals.get(role + number)
+            if signal is not None and mounting.turn is not None:
+                sign = mounting.gravity if role == "accelerometer" else 1.0
+                turned[role + number] = replace(signal, value=sign * signal.value @ mounting.turn.T)
+    return turned, mountings
+
+
+def _mounting(signals: dict[str, Signal], gyro: Signal | None, acc: Signal | None, first: Mounting | None) -> Mounting:
+    if gyro is None:
+        return first or Mounting(None, why="no gyro shows how it is mounted")
+    if "attitude" in signals and signals["attitude"].value.shape[1] == 3:
+        turn = _by_attitude(signals["attitude"], gyro)
+        if turn is not None:
+            return Mounting(turn, _sign(acc, turn, signals["attitude"]))
+        if first is not None and first.turn is not None:
+            return first
+        return Mounting(np.eye(3), _sign(acc, np.eye(3), signals["attitude"]), why="too few turns: axes taken as forward, right, down")
+    return _by_course(signals, gyro, acc)
+
+
+def _by_attitude(attitude: Signal, gyro: Signal) -> Float[np.ndarray, "3 3"] | None:
+    """The mounting whose turns are those of the attitude."""
+    grid = Grid({"attitude": attitude, "gyro": gyro}, max(attitude.time[0], gyro.time[0]), min(attitude.time[-1], gyro.time[-1]))
+    n = round(RATE_S / 0.2)
+    if len(grid.time) < 5 * n:
+        return None
+    angle = np.stack([np.interp(grid.time, attitude.time, np.unwrap(column)) for column in attitude.value.T], axis=1)
+    angle[grid.hole("attitude")] = np.nan
+    moved, turned = angle[n::n] - angle[:-n:n], grid.integral("gyro")[n::n] - grid.integral("gyro")[:-n:n]
+    roll, pitch, _ = ((angle[n::n] + angle[:-n:n]) / 2).T
+    dr, dp, dy = moved.T
+    # Body rates from angle rates (Groves 2.57).
+    body = np.stack(
+        [
+            dr - dy * np.sin(pitch),
+            dp * np.cos(roll) + dy * np.cos(pitch) * np.sin(roll),
+            -dp * np.sin(roll) + dy * np.cos(pitch) * np.cos(roll),
+        ],
+        axis=1,
+    )
+    there = np.isfinite(body).all(axis=1) & np.isfinite(turned).all(axis=1)
+    body, turned = body[there], turned[there]
+    if np.abs(body).sum() < TURN_RAD:
+        return None
+    left = [np.minimum(np.abs(turned @ turn.T - body), 0.3).mean() for turn in ROTATIONS]
+    order = np.argsort(left)
+    return ROTATIONS[order[0]] if left[order[1]] > MARGIN * left[order[0]] else None
+
+
+def _sign(acc: Signal | None, turn: Float[np.ndarray, "3 3"], attitude: Signal) -> float:
+    """Whether an accelerometer reads -g or +g on the axis that is down, given the attitude."""
+    if acc is None:
+        return 1.0
+    roll, pitch = (np.interp(acc.time, attitude.time, attitude.value[:, i]) for i in (0, 1))
+    down = np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)], axis=1)
+    return -1.0 if np.median(((acc.value @ turn.T) * down).sum(axis=1)) > 0 else 1.0
+
+
+def _by_course(signals: dict[str, Signal], gyro: Signal, acc: Signal | None) -> Mounting:
+    """A vehicle that stays level: gravity gives the vertical, course or heading its sign, speed the forward axis."""
+    if acc is None:
+        return Mounting(None, why="no accelerometer shows where down is")
+    mean = np.median(acc.value, axis=0)
+    axis = int(np.argmax(np.abs(mean)))
+    if np.abs(mean[axis]) < 0.7 * GRAVITY:
+        return Mounting(None, why="no axis of the accelerometer carries gravity")
+    turning = _turning(signals, gyro.value[:, axis], gyro.time)
+    if turning == 0.0:
+        return Mounting(None, why="no turns with a course to compare: the sign of the yaw rate is unknown")
+    down = np.zeros(3)
+    down[axis] = turning
+    gravity = -1.0 if mean @ down > 0 else 1.0
+    forward, sure = _forward(signals, acc, gravity, axis)
+    return Mounting(np.stack([forward, np.cross(down, forward), down]), gravity, sure, "" if sure else "too little braking: the forward axis is unknown")
+
+
+def _turning(signals: dict[str, Signal], rate: Float[np.ndarray, " n"], time: Float[np.ndarray, " n"]) -> float:
+    """+1 if a rate is positive in right turns, -1 if in left ones, 0 if that is undecided."""
+    angle = integrated(time, rate[:, None])[:, 0]
+    for at, course in _courses(signals):
+        n = max(round(4.0 / max(float(np.median(np.diff(at))), 1e-3)), 1)
+        moved, turned = course[n:] - course[:-n], np.interp(at[n:], time, angle) - np.interp(at[:-n], time, angle)
+        # How turns change from one window to the next: an offset of the gyro, lasting or new, has no say.
+        moved, turned = (np.clip(x[n:] - x[:-n], -CLIP_RAD, CLIP_RAD) for x in (moved, turned))
+        there = np.isfinite(moved) & np.isfinite(turned)
+        moved, turned = moved[there], turned[there]
+        if np.abs(moved).sum() < TURN_RAD * n:
+            continue
+        alike = float((moved * turned).sum() / np.sqrt((moved**2).sum() * max((turned**2).sum(), 1e-12)))
+        if abs(alike) > ALIKE:
+            return float(np.sign(alike))
+    return 0.0
+
+
+def _courses(signals: dict[str, Signal]) -> list[tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]]:
+    """What tells the direction of the vehicle: time and angle from north, clockwise [rad], NaN while it stands."""
+    found = []
+    if "heading" in signals:
+        found.append((signals["heading"].time, unwrapped(signals["heading"].value[:, 0])))
+    if "gnss.course" in signals and "gnss.speed" in signals:
+        time, speed = signals["gnss.course"].time, signals["gnss.speed"]
+        moving = np.interp(time, speed.time, speed.value[:, 0]) > 2.0
+        found.append((time, unwrapped(np.where(moving, signals["gnss.course"].value[:, 0], np.nan))))
+    for key in ("gnss.velocity", "gnss.position"):
+        if key in signals:
+            time, value = signals[key].time, signals[key].value
+            if key == "gnss.position":
+                n = max(round(1.0 / max(signals[key].period_s, 1e-3)), 1)
+                time, value = time[n:], (value[n:] - value[:-n]) / (time[n:] - time[:-n])[:, None]
+            course = np.arctan2(value[:, 1], value[:, 0])
+            found.append((time, unwrapped(np.where(np.hypot(*value.T) > 2.0, course, np.nan))))
+    return found
+
+
+def _forward(signals: dict[str, Signal], acc: Signal, gravity: float, axis: int) -> tuple[Float[np.ndarray, "3"], bool]:
+    """The horizontal axis along which speed changes, and whether that is sure."""
+    choices = [sign * np.eye(3)[i] for i in range(3) if i != axis for sign in (1.0, -1.0)]
+    speed = next((signals[key] for key in ("wheel", "gnss.speed") if key in signals), None)
+    if speed is None and "gnss.velocity" in signals:
+        velocity = signals["gnss.velocity"]
+        speed = replace(velocity, value=np.hypot(*velocity.value.T)[:, None])
+    if speed is None or len(speed.time) < 10:
+        return choices[0], False
+    n = max(round(2.0 / max(speed.period_s, 1e-3)), 1)
+    gained = speed.value[n:, 0] - speed.value[:-n, 0]
+    pulled = integrated(acc.time, gravity * (acc.value - np.median(acc.value, axis=0)))
+    pulled = np.stack([np.interp(speed.time, acc.time, column) for column in pulled.T], axis=1)
+    pulled = pulled[n:] - pulled[:-n]
+    left = [float(np.abs(gained - pulled @ choice).mean()) for choice in choices]
+    order = np.argsort(left)
+    return choices[order[0]], bool(left[order[1]] > 1.15 * left[order[0]] and np.abs(gained).max() > 1.0)

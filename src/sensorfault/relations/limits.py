@@ -1,0 +1,112 @@
+"""Limits of the tests: without a model from the log itself, held between a floor and a ceiling of its class."""
+
+import tomllib
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.relations.change import ENDS_S
+from sensorfault.relations.grid import STEP_S
+from sensorfault.relations.tests_of import Piece, Test
+
+TENTH = 10.0  # a limit is this many scales
+# Constant differences of rates that are usual for such sensors, by the part of a relation: a calibration, no fault.
+USUAL_RATE = {"gyro": 0.02, "side": 0.1, "acc": 0.6, "accelerometer": 0.6, "wheel": 1.5, "climb": 0.3, "reckoned": 0.3}
+RATE_WINDOWS_S = (4.0, 15.0)
+BLOCK_S, BLOCKS = 20.0, 5  # blocks of 20 s, or a fifth of the piece
+CLASSES = ("copter", "wing", "car", "underwater")
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The least and the largest scale of one kind of test in a class of vehicles."""
+
+    floor: float
+    ceiling: float
+
+
+@dataclass
+class Learned:
+    """What is known of one vehicle: usual change (`bias`) and limit of each test, lags, facts.
+
+    `own`: whether it comes from other, healthy logs (a model), not from the log that is judged.
+    """
+
+    bias: dict[str, float] = field(default_factory=dict)
+    limit: dict[str, float] = field(default_factory=dict)
+    lags: dict[str, float] = field(default_factory=dict)
+    facts: dict[str, float] = field(default_factory=dict)
+
+
+@cache
+def table() -> dict[str, dict[tuple[str, float], Bounds]]:
+    """Bounds by class and kind of test, from the table beside this file."""
+    with (Path(__file__).parent / "classes.toml").open("rb") as file:
+        rows = tomllib.load(file)["change"]
+    found: dict[str, dict[tuple[str, float], Bounds]] = {name: {} for name in CLASSES}
+    for row in rows:
+        found[row["class"]][row["kind"], float(row["window_s"])] = Bounds(row["floor"], row["ceiling"])
+    return found
+
+
+def bounds(vehicle: str, kind: tuple[str, float]) -> Bounds | None:
+    """Those of a class; of an unknown class the widest of all; None if no class has any."""
+    mine = table().get(vehicle, {}).get(kind)
+    if mine is not None:
+        return mine
+    all_of = [classes[kind] for classes in table().values() if kind in classes]
+    return Bounds(max(one.floor for one in all_of), max(one.ceiling for one in all_of)) if all_of else None
+
+
+def block_maxima(moved: Float[np.ndarray, " T"]) -> Float[np.ndarray, " B"]:
+    """The largest change of each block that has some."""
+    size = max(round(min(BLOCK_S, len(moved) * STEP_S / BLOCKS) / STEP_S), 5)
+    blocks = [np.abs(moved[i : i + size]) for i in range(0, len(moved), size)]
+    return np.array([np.nanmax(block) for block in blocks if np.isfinite(block).sum() >= 3])
+
+
+def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dict[str, float]) -> Learned:
+    """Limits of a log from itself: ten times its usual block maximum, within the bounds of its class."""
+    learned = Learned(lags=lags, facts=facts)
+    by_test: dict[str, tuple[Test, list[Float[np.ndarray, " T"]]]] = {}
+    for piece in pieces:
+        for k, test in enumerate(piece.tests):
+            by_test.setdefault(test.key, (test, []))[1].append(piece.moved[:, k])
+    rates = _rates([(test, np.concatenate(parts)) for test, parts in by_test.values()])
+    for key, (test, parts) in by_test.items():
+        known = bounds(vehicle, test.kind)
+        bias = rates.get(test.relation.name, 0.0) * _span_s(test)
+        maxima = np.concatenate([block_maxima(part - bias) for part in parts])
+        if not len(maxima):
+            continue
+        scale = float(np.median(maxima))
+        if known is not None:
+            scale = float(np.clip(scale, known.floor, known.ceiling))
+        learned.bias[key], learned.limit[key] = bias, TENTH * scale
+    return learned
+
+
+def _span_s(test: Test) -> float:
+    """From the middle of a window's first ticks to the middle of its last [s]; 0 for a change of slope."""
+    return max(test.window_s - min(test.window_s / 4, ENDS_S), STEP_S) if test.relation.order == 1 else 0.0
+
+
+def _rates(every: list[tuple[Test, Float[np.ndarray, " T"]]]) -> dict[str, float]:
+    """The usual rate at which the witnesses of each relation part: the median over windows of 4 or 15 s.
+
+    Within what is usual for such sensors: a fault that fills the log must not pass for it.
+    """
+    found = {}
+    for test, moved in every:
+        if test.window_s in RATE_WINDOWS_S and test.relation.order == 1 and np.isfinite(moved).sum() > 50:
+            most = usual_rate(test)
+            found[test.relation.name] = float(np.clip(np.nanmedian(moved) / _span_s(test), -most, most))
+    return found
+
+
+def usual_rate(test: Test) -> float:
+    """How fast two sensors may always part because they have another zero or scale."""
+    return max((USUAL_RATE.get(part, 0.05) for part in test.relation.kind.split("|")), default=0.0)

@@ -1,0 +1,171 @@
+"""The signals of a log by role: what each sensor measures, at its own times, in SI units and one convention each."""
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.logs.table import Channel, Log
+
+EARTH_M = 6_371_000.0  # mean radius
+XYZ = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One quantity of one sensor at its own n times.
+
+    `role`: what it is ("gnss.height"). `key`: unique name, the role with the number of the device if it is not the
+    first ("gnss2.height"). `sensor`: the log's name of the device. `columns`: its channels in the log. `value`: SI, and
+    local metres (north, east) for positions.
+    """
+
+    key: str
+    role: str
+    sensor: str
+    columns: tuple[int, ...]
+    time: Float[np.ndarray, " n"]
+    value: Float[np.ndarray, "n k"]
+
+    @property
+    def period_s(self) -> float:
+        """The usual time between two measurements [s]."""
+        return float(np.median(np.diff(self.time))) if len(self.time) > 1 else float("inf")
+
+    def cut(self, start_s: float, end_s: float) -> "Signal":
+        """What was measured from start to end, both included."""
+        rows = (self.time >= start_s) & (self.time <= end_s)
+        return Signal(self.key, self.role, self.sensor, self.columns, self.time[rows], self.value[rows])
+
+
+# An autopilot's estimates are no witnesses: they follow the sensors that they are made of.
+_ESTIMATE = re.compile(
+    r"global_position|local_position|estimat|ekf|filtered|setpoint|odom|nav_?(lat|lon|alt|v)|ref|truth|gt_|ground_?truth|relative"
+)
+_BAROMETER = re.compile(r"(?<!differential_)(?<!raw_)(?<!filtered_)baro|pressure_height|air_data|static")
+_WHEEL = re.compile(r"wheel|odo")
+_COMPASS = re.compile(r"compass|magnet|hdt|heading")
+_RATE_UNITS, _FIELD_UNITS = ("rad/s", "deg/s", "mrad/s"), ("gauss", "mgauss", "uT", "T", "nT")
+
+
+def signals_of(log: Log) -> dict[str, Signal]:
+    """All signals of a log whose role is known, by key."""
+    found: dict[str, Signal] = {}
+    for sensor in log.sensors:
+        if _ESTIMATE.search(sensor.name.lower()):
+            continue
+        columns = {log.channels[i].name: i for i in log.of(sensor.name)}
+        for role, names in _roles(sensor.name.lower(), columns, log.channels):
+            _add(found, log, sensor.name, role, tuple(columns[name] for name in names))
+    return _speed_of_whom(found)
+
+
+def _speed_of_whom(found: dict[str, Signal]) -> dict[str, Signal]:
+    """A speed of no named device is the wheels' where there is a steering, else the receiver's."""
+    if "speed" not in found:
+        return found
+    speed = found.pop("speed")
+    key = "wheel" if "steering" in found or "gnss.position" not in found else "gnss.speed"
+    if key not in found and "wheel" not in found:
+        found[key] = replace(speed, key=key, role=key)
+    return found
+
+
+def _roles(
+    sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]
+) -> list[tuple[str, tuple[str, ...]]]:
+    """The roles that a sensor's channels have, with the channels of each."""
+    unit = {name: channels[i].unit for name, i in columns.items()}
+    roles: list[tuple[str, tuple[str, ...]]] = []
+
+    def role(name: str, *wanted: str) -> bool:
+        there = all(one in columns for one in wanted)
+        if there:
+            roles.append((name, wanted))
+        return there
+
+    beacon = {"latitude", "range"} <= set(columns)
+    if beacon:
+        return []
+    gnss = "latitude" in columns or re.search(r"gnss|gps", sensor) is not None
+    if set(XYZ) <= set(columns):
+        if unit["x"] in _RATE_UNITS and "gyro" in sensor:
+            role("gyro", *XYZ)
+        elif unit["x"] in _FIELD_UNITS:
+            role("magnetometer", *XYZ)
+        elif "accel" in sensor:
+            role("accelerometer", *XYZ)
+        elif "dvl" in sensor:
+            role("dvl", "x", "y")
+    if "gyro" in sensor and "z" in columns and "x" not in columns:
+        role("yaw_rate", "z")
+    role("dvl", "forward", "right")
+    if not role("attitude", "roll", "pitch", "yaw"):
+        role("attitude", "roll", "pitch")
+    role("gnss.position", "latitude", "longitude")
+    if gnss:
+        role("gnss.height", "altitude") or role("gnss.height", "height")
+        role("gnss.velocity", "north", "east")
+        role("gnss.climb", "down") or role("gnss.climb", "up") or role("gnss.climb", "z")
+        role("gnss.speed", "speed")
+        role("gnss.course", "course")
+    elif _BAROMETER.search(sensor):
+        role("barometer", "altitude") or role("barometer", "height") or role("barometer", "pressure")
+    elif "depth" in columns and "range" not in columns:
+        role("depth", "depth")
+    elif _WHEEL.search(sensor) or "wheel_speed" in columns:
+        wheels = tuple(name for name in columns if unit[name] in ("m/s", "km/h", "mph", "kn"))
+        if wheels:
+            roles.append(("wheel", wheels))
+    elif sensor == "speed":
+        role("speed", "speed")
+    if not gnss and "yaw" not in columns:
+        role("heading", "heading") or (_COMPASS.search(sensor) and role("heading", "course"))
+    if "airspeed" in sensor or any("airspeed" in name for name in columns):
+        names = [name for name in columns if "airspeed" in name and "filtered" not in name and "deriv" not in name]
+        if names:
+            roles.append(("airspeed", (next((n for n in names if n.startswith("true")), names[0]),)))
+    if "steer" in sensor:
+        role("steering", "angle")
+    return roles
+
+
+def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tuple[int, ...]) -> None:
+    mine = list(columns)
+    new = log.fresh[:, mine].any(axis=1) & np.isfinite(log.value[:, mine]).all(axis=1)
+    if role == "gnss.position":
+        new &= (log.value[:, mine] != 0).any(axis=1)
+    if new.sum() < 5:
+        return
+    value = log.value[np.ix_(new, mine)]
+    if role == "barometer" and log.channels[mine[0]].name == "pressure" and not 2e4 < np.median(value) < 1.2e5:
+        return  # a differential pressure, not that of the air
+    value = _convention(role, tuple(log.channels[i].name for i in mine), value)
+    base, _, rest = role.partition(".")
+    number = 1
+    while (key := f"{base}{'' if number == 1 else number}{'.' + rest if rest else ''}") in found:
+        number += 1
+    same = next((s.key for s in found.values() if s.sensor == sensor and s.role.partition(".")[0] == base), None)
+    if rest and same is not None:
+        key = f"{same.partition('.')[0]}.{rest}"
+    found.setdefault(key, Signal(key, role, sensor, columns, log.time[new], value))
+
+
+def _convention(role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "n k"]:
+    """Local metres for degrees, up for down, altitude for pressure, one speed for several wheels."""
+    if role == "gnss.position":
+        latitude, longitude = value.T
+        origin = np.median(latitude), np.median(longitude)
+        around = np.angle(np.exp(1j * (longitude - origin[1])))
+        return np.stack([EARTH_M * (latitude - origin[0]), EARTH_M * np.cos(origin[0]) * around], axis=1)
+    if role == "gnss.climb" and names[0] in ("down", "z"):
+        return -value
+    if role == "depth":
+        return -value
+    if role == "barometer" and names[0] == "pressure":
+        # international standard atmosphere: h = 44330 (1 - (p / p0)^0.1903), p0 the first pressure
+        return np.asarray(44_330.0 * (1 - np.maximum(value / np.median(value[:5]), 1e-3) ** 0.190263))
+    if role == "wheel" and value.shape[1] > 1:
+        return value.mean(axis=1, keepdims=True)
+    return value

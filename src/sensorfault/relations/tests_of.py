@@ -1,0 +1,65 @@
+"""All tests of one piece of a log: every relation over every window."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.relations import lag
+from sensorfault.relations.change import WINDOWS_2_S, WINDOWS_S, change
+from sensorfault.relations.grid import Grid, wrapped
+from sensorfault.relations.table import Relation, residual, rows
+
+SHORT = 1.3  # a window is used where the piece is this many times longer
+
+
+@dataclass(frozen=True)
+class Test:
+    """One relation over one window [s]."""
+
+    relation: Relation
+    window_s: float
+
+    @property
+    def key(self) -> str:
+        """Unique in a log."""
+        return f"{self.relation.name} over {self.window_s:g} s"
+
+    @property
+    def kind(self) -> tuple[str, float]:
+        """What has the same limits."""
+        return self.relation.kind, self.window_s
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The K tests of a piece on its T ticks; NaN where a test has nothing to compare."""
+
+    grid: Grid
+    tests: tuple[Test, ...]
+    moved: Float[np.ndarray, "T K"]
+
+
+def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
+    """All tests of a piece. `lags`: of each relation [s]; one that is not there is fitted and added."""
+    tests, moved = [], []
+    duration = grid.end_s - grid.start_s
+    for relation in rows(set(grid.signals), courses):
+        both = relation.difference(grid)
+        if both is None or np.isfinite(both[0] - both[1]).sum() < 10:
+            continue
+        left, right = both
+        if relation.lagged:
+            if relation.name not in lags:
+                lags[relation.name] = lag.fitted(left, right, relation.order)
+            right = lag.shifted(right, lags[relation.name])
+        d = residual(relation, left, right)
+        for window_s in WINDOWS_S if relation.order == 1 else WINDOWS_2_S:
+            if duration < SHORT * window_s:
+                continue
+            one = change(d, window_s, relation.order)
+            tests.append(Test(relation, window_s))
+            moved.append(wrapped(one) if relation.circular else one)
+    if not tests:
+        return Piece(grid, (), np.zeros((len(grid.time), 0)))
+    return Piece(grid, tuple(tests), np.stack(moved, axis=1))
