@@ -18,7 +18,8 @@ from common import Bars, describe_machine, seconds
 from navigator import navigate
 
 from sensorfault.core.monitor import Branch, Monitor, MonitorState
-from sensorfault.core.types import FAULT, Report
+from sensorfault.core.types import Report
+from sensorfault.core.verdicts import FAULT
 from sensorfault.logs.epochs import framing
 from sensorfault.logs.table import Log
 from sensorfault.methods.gnss.gnss_ins import Filter, monitor, navigation

@@ -1,10 +1,10 @@
 # The public names: what `import sensorfault as sf` offers, and where each one lives. The only list of them: type
 # checkers read this file, and so does sensorfault/__init__.py when it runs.
 from sensorfault.core.monitor import Monitor as Monitor
-from sensorfault.core.types import FAULT as FAULT
-from sensorfault.core.types import OK as OK
-from sensorfault.core.types import UNKNOWN as UNKNOWN
-from sensorfault.core.types import VERDICTS as VERDICTS
+from sensorfault.core.verdicts import FAULT as FAULT
+from sensorfault.core.verdicts import OK as OK
+from sensorfault.core.verdicts import UNKNOWN as UNKNOWN
+from sensorfault.core.verdicts import VERDICTS as VERDICTS
 from sensorfault.evaluation.campaign import campaign as campaign
 from sensorfault.evaluation.judge import judge as judge
 from sensorfault.events.event import Event as Event

@@ -7,7 +7,7 @@ from core.scripted import FromBlock, branch, each, says, script, walk
 from laws.guests.statistics import Outlier
 from laws.guests.zoo import two_fixes
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.threshold.fixed import Fixed

@@ -5,7 +5,7 @@ import pytest
 
 from core.scripted import branch, each, says, script, walk
 from laws.damage import put
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 
 NAN = np.nan
 

@@ -7,7 +7,7 @@ import pytest
 
 from core.scripted import branch, each, says, script, walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 
 ROWS = 8
 

@@ -10,7 +10,7 @@ from laws.cases.guests import ZOO
 from laws.compilations import compilations
 from laws.walk import walk as plain_walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.runtime.runners import Stepper
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.statistic.norm import Norm

@@ -8,7 +8,7 @@ from laws.damage import holed, telling
 from laws.guests.zoo import block, inertial
 from laws.walk import assert_same, finite, walk
 from sensorfault.core.stage import keep_finite
-from sensorfault.core.types import OK, UNKNOWN
+from sensorfault.core.verdicts import OK, UNKNOWN
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

@@ -4,7 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from core.scripted import Says, branch, each, says, script, walk
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 
 NAN = np.nan
 

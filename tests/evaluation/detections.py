@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sensorfault.core.types import UNKNOWN
+from sensorfault.core.verdicts import UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.runtime.result import Detection

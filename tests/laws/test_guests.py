@@ -8,7 +8,7 @@ from laws.case import Case
 from laws.damage import half, lied
 from laws.guests import zoo
 from laws.walk import walk
-from sensorfault.core.types import FAULT, OK
+from sensorfault.core.verdicts import FAULT, OK
 
 
 @functools.cache

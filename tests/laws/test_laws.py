@@ -17,7 +17,8 @@ from laws.damage import absent, alone, half, holed, last_telling, lied, silenced
 from laws.register import CASES, names_with
 from laws.walk import Walk, assert_close, assert_same, finite, walk
 from sensorfault.core.monitor import SUBJECTS, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN, Report, Sample
+from sensorfault.core.types import Report, Sample
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.runtime.encoding import ModelError, Tensors, decode, encode
 from sensorfault.runtime.runners import Stepper, StepResult, fleet
 from sensorfault.stages.threshold.fixed import Fixed

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sensorfault.calibration.open_loop import uncalibrated
-from sensorfault.core.types import FAULT, UNKNOWN
+from sensorfault.core.verdicts import FAULT, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import LogError

@@ -7,7 +7,7 @@ from pathlib import Path
 import jax
 import numpy as np
 
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.logs.epochs import framing
 from sensorfault.logs.table import Log
 from sensorfault.methods.gnss.gnss_ins import Filter, model, monitor, navigation

@@ -10,7 +10,7 @@ import pytest
 
 import flown
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs import guess

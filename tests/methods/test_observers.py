@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import flown
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log, LogError

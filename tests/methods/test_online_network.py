@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from laws.cases.online_network import two_joints
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.arm.online_network import Setting, build
 from sensorfault.runtime.detect import detect

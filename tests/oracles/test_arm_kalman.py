@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from laws.walk import walk
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.methods.arm.arm_kalman import arm_kalman
 from sensorfault.runtime.runners import samples
 from sensorfault.simulation.arm import AS_PRINTED, PERIOD_S, run

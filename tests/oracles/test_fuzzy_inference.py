@@ -9,7 +9,8 @@ import pytest
 from core.scripted import FromBlock, Said
 from laws.walk import walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, Residual, Sample
+from sensorfault.core.types import Residual, Sample
+from sensorfault.core.verdicts import FAULT, OK
 from sensorfault.runtime.encoding import decode, encode
 from sensorfault.runtime.runners import samples
 from sensorfault.stages.decision.exceed import Exceed

@@ -6,7 +6,8 @@ import pytest
 
 from laws.walk import walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import OK, Residual, Score, Trust
+from sensorfault.core.types import Residual, Score, Trust
+from sensorfault.core.verdicts import OK
 from sensorfault.runtime.runners import samples
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop

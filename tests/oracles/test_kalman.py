@@ -7,7 +7,7 @@ import numpy as np
 from laws.damage import lied, silenced
 from laws.guests.zoo import R3, Q, log, position_log, three_positions
 from laws.walk import walk
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 
 LIMIT = 4.0
 SPREAD = np.array([1.0, 10.0])  # a vague belief would cost the textbook's covariance update its digits

@@ -10,7 +10,8 @@ import pytest
 
 import flown
 from laws.walk import walk
-from sensorfault.core.types import FAULT, OK, UNKNOWN, Trust
+from sensorfault.core.types import Trust
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.methods.height import kinematic_observer
 from sensorfault.runtime.runners import samples
 from sensorfault.training.session import SILENT

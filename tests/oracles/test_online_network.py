@@ -6,7 +6,8 @@ import pytest
 
 from laws.walk import Walk, walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN, Sample
+from sensorfault.core.types import Sample
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.numerics.networks.dense import Dense, Mlp
 from sensorfault.runtime.runners import samples
 from sensorfault.stages.decision.exceed import Exceed

@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 from core.scripted import FromBlock, Said
 from laws.walk import Walk, walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN, Residual, Score
+from sensorfault.core.types import Residual, Score
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.runtime.runners import samples
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.core.types import FAULT, UNKNOWN
+from sensorfault.core.verdicts import FAULT, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Channel, Log, Sensor

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import fitted
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import KINDS, Event
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject

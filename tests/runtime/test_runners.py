@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from laws.guests.zoo import ROWS, block, three_positions
-from sensorfault.core.types import OK, UNKNOWN
+from sensorfault.core.verdicts import OK, UNKNOWN
 from sensorfault.runtime.runners import Stepper, everything, fleet, replay, samples
 
 

@@ -8,7 +8,7 @@ import polars as pl
 import pytest
 
 import fitted
-from sensorfault.core.types import VERDICTS
+from sensorfault.core.verdicts import VERDICTS
 from sensorfault.logs.table import LogError
 from sensorfault.runtime.runners import Stepper
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.runtime.event_context import EventContext
 from sensorfault.runtime.fault_tracker import QUIET_S

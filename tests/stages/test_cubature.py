@@ -9,7 +9,7 @@ import pytest
 import missions
 from laws.walk import walk
 from sensorfault.core.monitor import Branch
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.methods.ranging.range_filter import Filter, cubature, followed, monitor, on_ranges

@@ -7,7 +7,7 @@ import numpy as np
 
 from core.scripted import FromBlock, branch, each, says, script, walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.statistic.exchange import Exchange

@@ -10,7 +10,7 @@ import pytest
 
 from laws.walk import Walk, finite, walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.logs.epochs import Framing, framing
 from sensorfault.logs.table import Log
 from sensorfault.methods.gnss.gnss_ins import Filter, monitor, navigation

@@ -10,7 +10,8 @@ from laws.guests.statistics import Normalized
 from laws.guests.zoo import R3, log, position_log
 from laws.walk import assert_close, finite, walk
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, Sample
+from sensorfault.core.types import Sample
+from sensorfault.core.verdicts import FAULT
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.several import Several

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.methods.catalog import METHODS
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.faults.fault import KINDS
 from sensorfault.logs.table import LogError
 from sensorfault.methods.catalog import METHODS

@@ -3,7 +3,7 @@
 import numpy as np
 
 import flown
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.runtime.replay import replay_log
 from sensorfault_studies.multistep.who import LASTS_S, Ramp, gate, judged
 

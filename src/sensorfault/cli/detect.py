@@ -1,17 +1,21 @@
 """`sensorfault detect`: the faults of a log."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from sensorfault.cli import answer, detecting, fitting, limits, options, outputs, show
+
+if TYPE_CHECKING:
+    from sensorfault.report.page_sketch import Sketch
 
 
 @click.command("detect")
 @options.log_argument
 @options.vehicle_option
 @options.model_option
-@options.method_option
+@options.detecting_method_option
 @options.learn_option
 @click.option(
     "--out",
@@ -29,7 +33,7 @@ def command(
     log: Path,
     vehicle: Path | None,
     model_path: Path | None,
-    method: str,
+    method: str | None,
     learn: float,
     outs: tuple[Path, ...],
     by_parts: bool | None,
@@ -37,29 +41,38 @@ def command(
     seed: int,
     json_path: str | None,
 ) -> None:
-    """List the faults of a log: when, which sensor and channel, what kind.
+    """List the faults of a log: when, which sensor, what kind, and which comparison found it.
 
-    Without --model, the first half of the log is assumed healthy to fit the method, and the second half is checked.
-    --learn changes that share. Of a long log read part by part, no more than four million numbers are used for the fit.
+    The method auto compares every sensor with what the others say, and judges the whole log. A model that 'fit' made of
+    healthy logs makes its limits sharper. Another method (--method) is fitted on the first half of the log (--learn)
+    and checks the rest; of a long log read part by part, no more than four million numbers are used for the fit.
     """
-    from sensorfault.core.extras import require
     from sensorfault.events.export import check, write_events
-    from sensorfault.report.page import write_page
-    from sensorfault.report.page_sketch import Sketch
 
     for out in outs:
         check(out)
-    if report_path is not None:
-        require("a report page", "plotly")
     outputs.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
     choice = fitting.Choice(model_path, method, learn, seed)
-    sketch = Sketch() if report_path else None
+    sketch = _sketch() if report_path else None
     found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take if sketch else None)
     show.events(found.events, f"Faults in {found.log.name}", answer=json_path != "-")
+    for sentence in limits.of_coverage(found):
+        show.say(sentence)
     for out in outs:
         write_events(found.events, found.log, out, log if log.suffix.lower() == ".mcap" else None)
         show.say(f"Wrote {out}.")
     if report_path is not None:
+        from sensorfault.report.page import write_page
+
         write_page(found, report_path, summary=limits.of_detection(found), sketch=sketch)
         show.say(f"Wrote {report_path}.")
     show.write_json(json_path, answer.of_detection(found))
+
+
+def _sketch() -> "Sketch":
+    from sensorfault.core.extras import require
+
+    require("a report page", "plotly")
+    from sensorfault.report.page_sketch import Sketch
+
+    return Sketch()

@@ -8,9 +8,11 @@ from sensorfault.cli import fitting, limits, reading, show
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
+    from sensorfault.runtime.compared import Comparison
     from sensorfault.runtime.detector import See
     from sensorfault.runtime.model import Model
     from sensorfault.runtime.result import Detection
+    from sensorfault.runtime.streaming import Parts
 
 
 def detect(model: "Model", log: "Log", doing: str = "judging") -> "Detection":
@@ -29,10 +31,13 @@ def detect_log(
 
     `by_parts`: see `reading.in_parts`. `see` gets each part that was judged, as in `detect_file`.
     """
-    from sensorfault.runtime.streaming import detect_parts
-
     parts = reading.in_parts(path, by_parts)
     read = partial(reading.read_in, parts, path, vehicle)
+    comparison = fitting.comparison_of(choice)
+    if comparison is not None:
+        return _compared(read, comparison, see)
+    from sensorfault.runtime.streaming import detect_parts
+
     with show.patient("judging") as judged:
         model = fitting.model_or_fit(choice)
         found = detect_parts(read, model, see, choice.learn, whole=not parts, progress=None if parts else judged)
@@ -40,3 +45,22 @@ def detect_log(
         for sentence in limits.of_detection(found):
             show.say(sentence)
     return found
+
+
+def _compared(read: "Parts", comparison: "Comparison", see: "See | None") -> "Detection":
+    """By what the sensors say of each other; needs no compiler."""
+    from sensorfault.runtime.compared import ComparingDetector
+
+    detector = ComparingDetector(comparison, see)
+    before = now = 0.0
+
+    def tell(share: float) -> None:
+        nonlocal now
+        now = share
+
+    def take(part: "Log") -> None:
+        nonlocal before
+        detector.take(part, now - before)
+        before = now
+
+    return detector.found(read(take, tell))

@@ -1,16 +1,20 @@
 """`sensorfault fit`: fit a model on a healthy log."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from sensorfault.cli import limits, options, outputs, reading, show
 
+if TYPE_CHECKING:
+    from sensorfault.logs import Log
+
 
 @click.command("fit")
 @options.log_argument
 @options.vehicle_option
-@options.method_option
+@options.fitting_method_option
 @options.out_option(None, "The model file to write.  [default: NAME.sensorfault here]")
 @click.option("--until", "until_s", type=float, help="Use the log only up to this time [s].")
 @click.option(
@@ -38,15 +42,22 @@ def command(
     json_path: str | None,
 ) -> None:
     """Fit a method on a healthy log, and count its false alarms on the part held out."""
-    from sensorfault.methods.catalog import recipe
-    from sensorfault.methods.fit import fit
-    from sensorfault.runtime.store import save
+    from sensorfault.relations.events import METHOD
 
-    recipe(method)
+    if method != METHOD:
+        from sensorfault.methods.catalog import recipe
+
+        recipe(method)
     outputs.check_outputs([out, json_path, checkpoint], [log, vehicle])
     table = reading.read_log(log, vehicle)
     if until_s is not None:
         table = table.between(end_s=until_s)
+    if method == METHOD:
+        _compare(table, out, json_path)
+        return
+    from sensorfault.methods.fit import fit
+    from sensorfault.runtime.store import save
+
     with show.progress() as bar:
         task = bar.add_task(f"fitting {method}", total=None)
         model = fit(table, method, held_out, seed, lambda doing: bar.update(task, description=doing), checkpoint)
@@ -59,3 +70,17 @@ def command(
         show.say(sentence)
     show.say(f"Wrote {target}.")
     show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})
+
+
+def _compare(log: "Log", out: Path | None, json_path: str | None) -> None:
+    """Fit the default method: what the sensors of a healthy log say of each other."""
+    from sensorfault.runtime.compared import comparison_of
+    from sensorfault.runtime.saved import write_comparison
+
+    comparison = comparison_of(log)
+    target = out or Path(f"{log.name}.sensorfault")
+    write_comparison(comparison, target)
+    for sentence in limits.of_comparison(comparison):
+        show.say(sentence)
+    show.say(f"Wrote {target}.")
+    show.write_json(json_path, {"model": str(target), "method": comparison.method, **comparison.summary})

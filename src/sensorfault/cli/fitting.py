@@ -8,20 +8,21 @@ from sensorfault.cli import limits, show
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
+    from sensorfault.runtime.compared import Comparison
     from sensorfault.runtime.model import Model
     from sensorfault.runtime.streaming import Fit
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What the user chose: a model file; or a method, and the share of the log to fit it on.
+    """What the user chose: a model file; or a method, and the share of the log to fit it on. No method: auto.
 
     Raises:
         LogError: the share is not one.
     """
 
     path: Path | None
-    method: str
+    method: str | None
     learn: float
     seed: int
 
@@ -30,6 +31,25 @@ class Choice:
 
         if not 0.05 <= self.learn <= 0.95:  # click accepts NaN as a number
             raise LogError(f"--learn is {self.learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
+
+
+def comparison_of(choice: Choice) -> "Comparison | None":
+    """The comparison to judge with, if that is what the user chose; None if it is another method.
+
+    Raises:
+        LogError: a model of another method than the one asked for.
+    """
+    from sensorfault.logs import LogError
+    from sensorfault.relations.events import METHOD
+    from sensorfault.runtime.compared import Comparison
+    from sensorfault.runtime.saved import method_of, read_comparison
+
+    if choice.path is None:
+        return Comparison() if choice.method in (None, METHOD) else None
+    method = method_of(choice.path)
+    if choice.method not in (None, method):
+        raise LogError(f"{choice.path} is a model of {method}, not of {choice.method}; leave out --method.")
+    return read_comparison(choice.path) if method == METHOD else None
 
 
 def model_or_fit(choice: Choice) -> "Model | Fit":
@@ -42,6 +62,7 @@ def model_or_fit(choice: Choice) -> "Model | Fit":
     def fitted(log: "Log") -> "Model":
         from sensorfault.methods.fit import fit
 
+        assert choice.method is not None
         with show.progress() as bar:
             task = bar.add_task(f"fitting {choice.method}", total=None)
             model = fit(log, choice.method, held_out=0.0, seed=choice.seed)

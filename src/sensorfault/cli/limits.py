@@ -6,19 +6,53 @@ from typing import TYPE_CHECKING, Any
 from sensorfault.core.times import clock
 
 if TYPE_CHECKING:
+    from sensorfault.runtime.compared import Comparison
     from sensorfault.runtime.model import Model
     from sensorfault.runtime.result import Detection
 
 WATCHED_SHOWN = 24
 SUSPECTS_SHOWN = 10
+NAMES_SHOWN = 8
 
 
 def of_detection(detection: "Detection") -> tuple[str, ...]:
     """The limits of the model that judged a log."""
+    if detection.coverage is not None:
+        return of_coverage(detection)
     assert detection.model is not None
     if detection.fitted_on_s is not None:
         return of_own_model(detection.model, *detection.fitted_on_s)
     return of_model(detection.model)
+
+
+def of_coverage(detection: "Detection") -> tuple[str, ...]:
+    """What the default compared, and what it did not and why; nothing for other methods."""
+    coverage = detection.coverage
+    if coverage is None:
+        return ()
+    compared = ", ".join(coverage.compared)
+    said = [f"Compared with each other: {compared}." if compared else "Nothing could be compared."]
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in coverage.not_compared.items():
+        by_reason.setdefault(reason, []).append(name)
+    said += [f"Not compared: {_some(names)} ({reason})." for reason, names in by_reason.items()]
+    return (*said, *coverage.sentences)
+
+
+def of_comparison(comparison: "Comparison") -> tuple[str, ...]:
+    """How many comparisons were fitted, on what, and what is known of their false alarms."""
+    learned, summary = comparison.learned, comparison.summary
+    assert learned is not None
+    count = len({key.rpartition(" over ")[0] for key in learned.limit})
+    return (
+        f"Fitted {count} comparisons of the sensors of a {summary['vehicle'] or 'vehicle'} on {clock(summary['training_s'])}.",
+        "One log promises no false-alarm rate; its limits are the largest differences seen, with a margin.",
+    )
+
+
+def _some(names: list[str]) -> str:
+    more = f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
+    return f"{', '.join(names[:NAMES_SHOWN])}{more}"
 
 
 def of_own_model(model: "Model", start_s: float, end_s: float) -> tuple[str, ...]:

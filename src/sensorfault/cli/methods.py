@@ -4,6 +4,12 @@ import click
 
 from sensorfault.cli import options, show
 
+AUTO = (
+    "auto",
+    "the default: each sensor against what the others say, and levels that must hold",
+    "analytical redundancy",
+)
+
 
 @click.command("methods")
 @options.json_option
@@ -12,15 +18,19 @@ def command(json_path: str | None) -> None:
     from sensorfault.methods.catalog import METHODS
 
     if json_path != "-":
-        rows = [(recipe.name, recipe.title, recipe.source) for recipe in METHODS.values()]
+        rows = [AUTO, *((recipe.name, recipe.title, recipe.source) for recipe in METHODS.values())]
         show.table("Methods", ("name", "what it is", "source"), rows)
+    auto = {"name": AUTO[0], "title": AUTO[1], "source": AUTO[2], "false_alarm_rate": "none is promised"}
     listed = [
-        {
-            "name": recipe.name,
-            "title": recipe.title,
-            "source": recipe.source,
-            "false_alarm_rate": recipe.false_alarm_rate,
-        }
-        for recipe in METHODS.values()
+        auto,
+        *(
+            {
+                "name": recipe.name,
+                "title": recipe.title,
+                "source": recipe.source,
+                "false_alarm_rate": recipe.false_alarm_rate,
+            }
+            for recipe in METHODS.values()
+        ),
     ]
     show.write_json(json_path, {"methods": listed})

@@ -20,6 +20,14 @@ method_option = click.option(
     show_default=True,
     help="One of 'sensorfault methods'.",
 )
+fitting_method_option = click.option(
+    "--method", default="auto", show_default=True, help="One of 'sensorfault methods'."
+)
+detecting_method_option = click.option(
+    "--method",
+    default=None,
+    help="One of 'sensorfault methods'.  [default: auto, or the model's own]",
+)
 model_option = click.option(
     "--model", "model_path", type=click.Path(path_type=Path), help="A model that 'sensorfault fit' wrote."
 )
@@ -28,7 +36,8 @@ learn_option = click.option(
     default=0.5,
     show_default=True,
     type=click.FloatRange(0.05, 0.95),
-    help="Without --model: share of the log, from its beginning, to assume healthy and fit on.",
+    help="With a method other than auto and no --model: share of the log, from its beginning, to assume healthy and "
+    "fit on.",
 )
 by_parts_option = click.option(
     "--by-parts/--whole",

@@ -11,7 +11,7 @@ from sensorfault.cli import answer, detecting, fitting, limits, options, outputs
 @options.log_argument
 @options.vehicle_option
 @options.model_option
-@options.method_option
+@options.detecting_method_option
 @options.learn_option
 @options.out_option("report.html", "The page to write.")
 @click.option(
@@ -27,7 +27,7 @@ def command(
     log: Path,
     vehicle: Path | None,
     model_path: Path | None,
-    method: str,
+    method: str | None,
     learn: float,
     out: Path,
     truth_path: Path | None,

@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 from jaxtyping import Array, Bool, Float, Int8
 
-# Ordered: the verdict on a sensor is the largest over its channels.
-OK, UNKNOWN, FAULT = 0, 1, 2
-VERDICTS = ("ok", "unknown", "fault")
+from sensorfault.core.verdicts import FAULT as FAULT
+from sensorfault.core.verdicts import OK as OK
+from sensorfault.core.verdicts import UNKNOWN as UNKNOWN
+
 NEVER = -1e12  # a time before every clock's first tick [s]; finite, because a state never holds infinity
 
 

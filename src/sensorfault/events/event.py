@@ -30,6 +30,8 @@ class Event:
             was measured [s].
         limit: the limit of that test. For a kind "missing", how long a sensor may be silent [s].
         method: the recipe of the model.
+        found_by: the comparison that found it, where a method names it: "gnss.height | barometer over 15 s".
+        candidates: where the sensor could not be isolated, those that explain what was measured, likeliest first.
     """
 
     start_s: float
@@ -41,17 +43,23 @@ class Event:
     peak_score: float | None
     limit: float | None
     method: str
+    found_by: str | None = None
+    candidates: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON; the keys are the fields."""
-        return asdict(self)
+        return {**asdict(self), "candidates": list(self.candidates)}
 
     @property
     def accused(self) -> str:
         """The sensor's name, or one of MOTION, WHOLE_LOG, UNKNOWN."""
         if self.subject == "motion":
             return MOTION
-        return self.sensor or (WHOLE_LOG if self.kind == "missing" else UNKNOWN)
+        return self.sensor or (WHOLE_LOG if self.kind == "missing" else self._unknown)
+
+    @property
+    def _unknown(self) -> str:
+        return f"{UNKNOWN}: {' or '.join(self.candidates)}" if self.candidates else UNKNOWN
 
     @property
     def where(self) -> str:
@@ -64,7 +72,7 @@ class Event:
         unit = " s" if self.kind == "missing" else ""
         size = ", ".join(f"{name} {value:.3g}{unit}" for name, value in sizes if value is not None)
         kind = "fault" if self.kind == "unknown" else self.kind
-        of = f", {UNKNOWN}" if self.where == UNKNOWN else f" of {self.where}"
+        of = f", {self.where}" if self.where.startswith(UNKNOWN) else f" of {self.where}"
         return f"{clock(self.start_s)}{end} {kind}{of}" + (f" ({size})" if size else "")
 
     def __repr__(self) -> str:

@@ -3,12 +3,15 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal, overload
 
 from sensorfault.calibration.data_screening import leave_out
 from sensorfault.core.expect import LOG, expect
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.catalog import DEFAULT, recipe
+from sensorfault.methods.catalog import recipe
 from sensorfault.numerics.poisson import rate_below
+from sensorfault.relations.events import METHOD as AUTO
+from sensorfault.runtime.compared import Comparison, comparison_of
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
@@ -16,14 +19,36 @@ from sensorfault.training.session import Session
 HELD_OUT = 0.3
 
 
+@overload
 def fit(
     log: Log,
-    method: str = DEFAULT,
+    method: Literal["auto"] = "auto",
     held_out: float = HELD_OUT,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
     checkpoint: Path | None = None,
-) -> Model:
+) -> Comparison: ...
+
+
+@overload
+def fit(
+    log: Log,
+    method: str,
+    held_out: float = HELD_OUT,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+    checkpoint: Path | None = None,
+) -> Model: ...
+
+
+def fit(
+    log: Log,
+    method: str = AUTO,
+    held_out: float = HELD_OUT,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+    checkpoint: Path | None = None,
+) -> Model | Comparison:
     """Fit a method of the catalog on a healthy log.
 
     The last share `held_out` of the log (0 to 0.9) is not used for the fit; the model is tested on it afterwards, and
@@ -37,7 +62,7 @@ def fit(
 
     Args:
         log: T rows, C channels in SI on one clock, taken as healthy.
-        method: a name of `METHODS`.
+        method: "auto", which compares the sensors with each other and uses the whole log, or a name of `METHODS`.
         held_out: share of the log.
         seed: of all chance in the fit; the same seed gives the same model.
         progress: called with a sentence.
@@ -48,11 +73,13 @@ def fit(
         TypeError: something else than a log, or than the name of a method.
     """
     expect(log, Log, "fit: log", LOG)
-    expect(method, str, "fit: method", "the name of one, as in sf.METHODS")
+    expect(method, str, "fit: method", "the name of one: auto, or one of sf.METHODS")
     if not 0 <= held_out <= 0.9:
         raise LogError(f"held_out is {held_out:g}; give the share of the log to hold out for testing, 0 to 0.9.")
     if len(log) < 2:
         raise LogError(f"{log.name} has {len(log)} rows; give a log of at least a few seconds.")
+    if method == AUTO:
+        return comparison_of(log)
     session = Session(progress, checkpoint) if progress else Session(checkpoint=checkpoint)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s
     session.progress(f"fitting {method}")

@@ -47,7 +47,9 @@ def _rotations() -> list[Float[np.ndarray, "3 3"]]:
 ROTATIONS = _rotations()
 
 
-def mounted(signals: dict[str, Signal], known: dict[str, Mounting] | None = None) -> tuple[dict[str, Signal], dict[str, Mounting]]:
+def mounted(
+    signals: dict[str, Signal], known: dict[str, Mounting] | None = None
+) -> tuple[dict[str, Signal], dict[str, Mounting]]:
     """The signals with every inertial unit turned to forward, right, down, and how each was mounted.
 
     `known`: mountings that a model stores; they are taken as they are.
@@ -57,7 +59,7 @@ def mounted(signals: dict[str, Signal], known: dict[str, Mounting] | None = None
     numbers = dict.fromkeys(key.removeprefix(role) for key, s in signals.items() for role in INERTIAL if s.role == role)
     for number in numbers:
         gyro, acc = signals.get(f"gyro{number}"), signals.get(f"accelerometer{number}")
-        mounting = (known or {}).get(number) or _mounting(signals, gyro, acc, mountings.get(""))
+        mounting = _known(known, number) or _mounting(signals, gyro, acc, mountings.get(""))
         mountings[number] = mounting
         for role in INERTIAL:
             signal = signals.get(role + number)
@@ -65,6 +67,12 @@ def mounted(signals: dict[str, Signal], known: dict[str, Mounting] | None = None
                 sign = mounting.gravity if role == "accelerometer" else 1.0
                 turned[role + number] = replace(signal, value=sign * signal.value @ mounting.turn.T)
     return turned, mountings
+
+
+def _known(known: dict[str, Mounting] | None, number: str) -> Mounting | None:
+    """A stored mounting that is decided."""
+    one = (known or {}).get(number)
+    return one if one is not None and one.turn is not None else None
 
 
 def _mounting(signals: dict[str, Signal], gyro: Signal | None, acc: Signal | None, first: Mounting | None) -> Mounting:
@@ -76,13 +84,19 @@ def _mounting(signals: dict[str, Signal], gyro: Signal | None, acc: Signal | Non
             return Mounting(turn, _sign(acc, turn, signals["attitude"]))
         if first is not None and first.turn is not None:
             return first
-        return Mounting(np.eye(3), _sign(acc, np.eye(3), signals["attitude"]), why="too few turns: axes taken as forward, right, down")
+        return Mounting(
+            np.eye(3),
+            _sign(acc, np.eye(3), signals["attitude"]),
+            why="too few turns: axes taken as forward, right, down",
+        )
     return _by_course(signals, gyro, acc)
 
 
 def _by_attitude(attitude: Signal, gyro: Signal) -> Float[np.ndarray, "3 3"] | None:
     """The mounting whose turns are those of the attitude."""
-    grid = Grid({"attitude": attitude, "gyro": gyro}, max(attitude.time[0], gyro.time[0]), min(attitude.time[-1], gyro.time[-1]))
+    grid = Grid(
+        {"attitude": attitude, "gyro": gyro}, max(attitude.time[0], gyro.time[0]), min(attitude.time[-1], gyro.time[-1])
+    )
     n = round(RATE_S / 0.2)
     if len(grid.time) < 5 * n:
         return None
@@ -133,7 +147,12 @@ def _by_course(signals: dict[str, Signal], gyro: Signal, acc: Signal | None) -> 
     down[axis] = turning
     gravity = -1.0 if mean @ down > 0 else 1.0
     forward, sure = _forward(signals, acc, gravity, axis)
-    return Mounting(np.stack([forward, np.cross(down, forward), down]), gravity, sure, "" if sure else "too little braking: the forward axis is unknown")
+    return Mounting(
+        np.stack([forward, np.cross(down, forward), down]),
+        gravity,
+        sure,
+        "" if sure else "too little braking: the forward axis is unknown",
+    )
 
 
 def _turning(signals: dict[str, Signal], rate: Float[np.ndarray, " n"], time: Float[np.ndarray, " n"]) -> float:

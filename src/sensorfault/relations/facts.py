@@ -23,7 +23,11 @@ def _steering(grid: Grid) -> dict[str, float]:
     if "steering" not in grid or speed is None:
         return {}
     angle, v = grid.value("steering")[:, 0], grid.value(speed)[:, 0]
-    fits = [_fit(angle, v, np.gradient(yaw, grid.time)) for yaw in (turned(2)(grid), course("gnss")(grid)) if yaw is not None]
+    fits = [
+        _fit(angle, v, np.gradient(yaw, grid.time))
+        for yaw in (turned(2)(grid), course("gnss")(grid))
+        if yaw is not None
+    ]
     fits = [fit for fit in fits if fit is not None]
     if not fits:
         return {}

@@ -62,7 +62,9 @@ class Grid:
 
     def integral(self, key: str) -> Float[np.ndarray, "T k"]:
         """Its integral since the piece began."""
-        return self._keep("i " + key, lambda: self.put(key, integrated(self.signals[key].time, self.signals[key].value)))
+        return self._keep(
+            "i " + key, lambda: self.put(key, integrated(self.signals[key].time, self.signals[key].value))
+        )
 
     def _keep(self, name: str, make):  # type: ignore[no-untyped-def]
         if name not in self._kept:
@@ -92,9 +94,7 @@ def wrapped(angle: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
     return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
-def to_local(
-    attitude: Float[np.ndarray, "n 3"], vector: Float[np.ndarray, "n 3"]
-) -> Float[np.ndarray, "n 3"]:
+def to_local(attitude: Float[np.ndarray, "n 3"], vector: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
     """Body (forward, right, down) to north, east, down by roll, pitch, yaw [rad] (Groves 2.22)."""
     (r, p, y), (a, b, c) = attitude.T, vector.T
     sr, cr, sp, cp, sy, cy = np.sin(r), np.cos(r), np.sin(p), np.cos(p), np.sin(y), np.cos(y)
@@ -111,4 +111,6 @@ def angle_rates(
     p, q, r = rate.T
     turn = np.sin(roll) * q + np.cos(roll) * r
     cos = np.maximum(np.cos(pitch), 0.2)
-    return np.stack([p + np.tan(np.clip(pitch, -1.3, 1.3)) * turn, np.cos(roll) * q - np.sin(roll) * r, turn / cos], axis=1)
+    return np.stack(
+        [p + np.tan(np.clip(pitch, -1.3, 1.3)) * turn, np.cos(roll) * q - np.sin(roll) * r, turn / cos], axis=1
+    )

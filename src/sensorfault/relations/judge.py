@@ -1,13 +1,13 @@
 """Judge a whole log: tests, limits, names, and events from them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import Log
 from sensorfault.relations import axes, facts, levels, limits
-from sensorfault.relations.grid import STEP_S, Grid, pieces_of
+from sensorfault.relations.grid import Grid, pieces_of
 from sensorfault.relations.isolation import Isolation, Named
 from sensorfault.relations.levels import Finding
 from sensorfault.relations.signals import Signal, signals_of
@@ -50,41 +50,59 @@ class Judged:
     findings: list[Finding] = field(default_factory=list)
 
 
-def prepared(log: Log, learned: limits.Learned | None = None) -> tuple[str, dict[str, Signal], dict[str, axes.Mounting], list[Piece], limits.Learned]:
-    """Signals, mountings and tests of a log, and what was learned of its vehicle (or is learned from it)."""
-    signals, mountings = axes.mounted(signals_of(log))
-    unknown = {role + number for number, m in mountings.items() if m.turn is None for role in axes.INERTIAL}
-    vehicle = class_of(signals)
-    used = {key: signal for key, signal in signals.items() if key not in unknown}
-    facts_of = dict(learned.facts) if learned else {}
-    lags = dict(learned.lags) if learned else {}
-    if vehicle != "copter":
-        facts_of.setdefault("acceleration.period", SLOW_FAST_S)
-    pieces = []
-    for start, end in pieces_of(used):
-        if end - start < SHORTEST_S:
-            continue
-        inside = {key: part for key, signal in used.items() if len((part := signal.cut(start, end)).time) >= 4}
-        grid = Grid(inside, start, end, facts_of)
-        if learned is None and "steering.gain" not in facts_of:
-            facts_of.update(facts.learned(grid))
-        pieces.append(judged(grid, vehicle in ("car", "wing"), lags))
-    learned = learned or limits.of_log(pieces, vehicle, lags, facts_of)
-    return vehicle, signals, mountings, pieces, learned
+def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
+    """Signals, mountings and tests of one log or several of one vehicle, with what is known of it or begins to be."""
+    known = learned or limits.Learned()
+    facts_of, lags, mountings = dict(known.facts), dict(known.lags), dict(known.mountings)
+    signals: dict[str, Signal] = {}
+    pieces: list[Piece] = []
+    vehicle = known.vehicle
+    for log in logs:
+        signals, mountings = axes.mounted(signals_of(log), mountings)
+        vehicle = vehicle or class_of(signals)
+        if vehicle != "copter":
+            facts_of.setdefault("acceleration.period", SLOW_FAST_S)
+        unknown = {role + number for number, m in mountings.items() if m.turn is None for role in axes.INERTIAL}
+        used = {key: signal for key, signal in signals.items() if key not in unknown}
+        for start, end in pieces_of(used):
+            if end - start < SHORTEST_S:
+                continue
+            inside = {key: part for key, signal in used.items() if len((part := signal.cut(start, end)).time) >= 4}
+            grid = Grid(inside, start, end, facts_of)
+            if learned is None and "steering.gain" not in facts_of:
+                facts_of.update(facts.learned(grid))
+            pieces.append(judged(grid, vehicle in ("car", "wing"), lags))
+    begun = limits.Learned(lags=lags, facts=facts_of, mountings=mountings, vehicle=vehicle)
+    return Judged(vehicle, signals, mountings, pieces, learned or begun, [])
+
+
+def fitted(logs: list[Log]) -> limits.Learned:
+    """What healthy logs of one vehicle teach: usual changes, limits, lags, axes."""
+    result = _prepared(logs, None)
+    begun = result.learned
+    learned = limits.of_healthy(result.pieces, result.vehicle, begun.lags, begun.facts)
+    return replace(learned, mountings=result.mountings, vehicle=result.vehicle)
 
 
 def judge(log: Log, learned: limits.Learned | None = None) -> Judged:
     """Judge a log. Without `learned` its limits come from the log itself and from its class of vehicle."""
-    vehicle, signals, mountings, pieces, learned = prepared(log, learned)
-    result = Judged(vehicle, signals, mountings, pieces, learned, [])
+    result = _prepared([log], learned)
+    pieces, signals, vehicle = result.pieces, result.signals, result.vehicle
+    if learned is None:
+        begun = result.learned
+        own = limits.of_log(pieces, vehicle, begun.lags, begun.facts)
+        result.learned = replace(own, mountings=result.mountings, vehicle=vehicle)
+    rates = limits.rates_of(pieces, result.learned)
     end_s = _impact(signals)
     for piece in pieces:
-        score, limit = _scores(piece, learned)
+        score, limit = _scores(piece, result.learned, rates)
+        found = [one for one in levels.findings(piece.grid, vehicle) if one.start_s < end_s]
+        _leave_out(piece, score, found)
         if np.isfinite(end_s):
             score[piece.grid.time > end_s] = np.nan
         result.scores.append(score)
         result.episodes += _episodes(piece, score, limit)
-        result.findings += [one for one in levels.findings(piece.grid, vehicle) if one.start_s < end_s]
+        result.findings += found
     result.findings += levels.silences(signals, [(p.grid.start_s, min(p.grid.end_s, end_s)) for p in pieces], vehicle)
     return result
 
@@ -96,13 +114,24 @@ def _impact(signals: dict[str, Signal]) -> float:
     return float(min(hits)) if hits else float("inf")
 
 
-def _scores(piece: Piece, learned: limits.Learned) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, " K"]]:
+def _scores(
+    piece: Piece, learned: limits.Learned, rates: dict[str, float]
+) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, " K"]]:
     """Changes without their usual value, in units of their limits."""
     limit = np.array([learned.limit.get(test.key, np.inf) for test in piece.tests])
-    bias = np.array([learned.bias.get(test.key, 0.0) for test in piece.tests])
-    score = (piece.moved - bias) / limit
+    usual = np.array([rates.get(test.relation.name, 0.0) * limits.span_s(test) for test in piece.tests])
+    score = (piece.moved - usual) / limit
     score[:, ~np.isfinite(limit)] = np.nan
     return score, limit
+
+
+def _leave_out(piece: Piece, score: Float[np.ndarray, "T K"], found: list[Finding]) -> None:
+    """Compare nothing with a device that is wrong by itself, until the piece ends: no other may pay for it."""
+    time = piece.grid.time
+    for one in found:
+        if one.kind not in ("spike", "missing", "frozen"):
+            mine = [any(device == one.device for (device, _), _ in test.relation.blame) for test in piece.tests]
+            score[np.ix_(time > one.start_s, mine)] = np.nan
 
 
 def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, " K"]) -> list[Episode]:
@@ -120,6 +149,8 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
             if len(ticks) < LEAST_TICKS:
                 continue
             named = Named(device, ()) if device else isolation.name(votes[_some(ticks)], limit)
+            if named.device is None and not device:
+                named = _by_the_attitude(piece, score[ticks], named)
             episodes.append(_episode(piece, score if device else votes, limit, ticks, named))
     return episodes
 
@@ -127,6 +158,21 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
 def _some(ticks: np.ndarray, most: int = 60) -> np.ndarray:
     """At most so many of them, evenly."""
     return ticks[:: max(1, len(ticks) // most)]
+
+
+def _by_the_attitude(piece: Piece, score: Float[np.ndarray, "n K"], named: Named) -> Named:
+    """Of devices that explain the same, the one that alone contradicts the attitude, which is no witness else."""
+    worst: dict[str, float] = {}
+    for device, _ in named.candidates:
+        mine = [
+            k
+            for k, test in enumerate(piece.tests)
+            if {one for (one, _), _ in test.relation.blame} == {device, "attitude"} and test.relation.family == "yaw"
+        ]
+        if mine and np.isfinite(score[:, mine]).any():
+            worst[device] = float(np.nanmax(np.abs(score[:, mine])))
+    over = [device for device, most in worst.items() if most > 1]
+    return Named(over[0], named.candidates) if len(over) == 1 and len(worst) > 1 else named
 
 
 def _attitude_alone(piece: Piece, score: Float[np.ndarray, "T K"]) -> np.ndarray:

@@ -22,7 +22,9 @@ def shifted(x: Float[np.ndarray, " T"], lag_s: float) -> Float[np.ndarray, " T"]
     return out
 
 
-def fitted(left: Float[np.ndarray, " T"], right: Float[np.ndarray, " T"], order: int, lags: Float[np.ndarray, " L"] = LAGS_S) -> float:
+def fitted(
+    left: Float[np.ndarray, " T"], right: Float[np.ndarray, " T"], order: int, lags: Float[np.ndarray, " L"] = LAGS_S
+) -> float:
     """How much later `left` is than `right` [s]: what makes their changes most alike; 0 where that is not clear."""
     base = change(left - right, WINDOW_S, order)
     if np.isfinite(base).sum() < 50 or not (usual := float(np.nanmedian(np.abs(base)))):

@@ -16,7 +16,8 @@ REST_ACC, REST_RATE, REST_RATE_SD = 0.25, 0.08, 0.03  # at rest: sd of |a|, mean
 RESTING = 8  # measurements in a second that can show rest
 REST_OFF, REST_WINDOWS = 0.6, 3  # gravity at rest may be off by this [m/s^2], median of three windows
 FLIGHT_OFF, TILT_RAD = 2.0, 1.05  # mean acceleration over 2 s may differ from g by this, unless the vehicle leans
-TWIN_ACC, TWIN_GYRO, GYRO_REST = 0.6, 0.03, 0.1
+GYRO_REST = 0.3  # a gyro at rest may read this [rad/s]; less is a matter of calibration
+ROUGH_RATE, ROUGH_ACC = 0.7, 2.5  # rougher than this [rad/s, m/s^2] gravity is not to be seen
 SPIKE_M = {"copter": 30.0, "wing": 40.0, "car": 30.0}
 CLIMB_M_S = {"copter": 35.0, "wing": 60.0, "car": 15.0}
 SPEED_M_S = {"copter": 45.0, "wing": 80.0, "car": 70.0, "underwater": 10.0}
@@ -53,9 +54,16 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
         elif base == "gnss.height":
             yield from _height(signal, vehicle, "height")
         elif base in ("gnss.velocity", "gnss.speed"):
-            yield from _beyond(signal, np.linalg.norm(signal.value, axis=1), SPEED_M_S.get(vehicle, 100.0), "speed that no such vehicle has")
+            yield from _beyond(
+                signal,
+                np.linalg.norm(signal.value, axis=1),
+                SPEED_M_S.get(vehicle, 100.0),
+                "speed that no such vehicle has",
+            )
         elif base == "gnss.climb":
-            yield from _beyond(signal, np.abs(signal.value[:, 0]), RISE_M_S.get(vehicle, 60.0), "climb rate that no such vehicle has")
+            yield from _beyond(
+                signal, np.abs(signal.value[:, 0]), RISE_M_S.get(vehicle, 60.0), "climb rate that no such vehicle has"
+            )
         if base != "attitude" and not key.startswith("attitude"):
             yield from _repeats(grid, signal)
     yield from _steering(grid)
@@ -67,7 +75,9 @@ def device_of(signal: Signal) -> str:
     return signal.key.partition(".")[0]
 
 
-def _windows(time: Float[np.ndarray, " n"], value: Float[np.ndarray, " n"], width: float, least: int = 3) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _windows(
+    time: Float[np.ndarray, " n"], value: Float[np.ndarray, " n"], width: float, least: int = 3
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Centre, mean and standard deviation over windows beside each other that have enough measurements."""
     if not len(time):
         return np.zeros(0), np.zeros(0), np.zeros(0)
@@ -100,7 +110,9 @@ def _runs(time: Float[np.ndarray, " n"], bad: Bool[np.ndarray, " n"], join_s: fl
     yield from zip(index[np.r_[0, cut + 1]].tolist(), index[np.r_[cut, len(index) - 1]].tolist(), strict=True)
 
 
-def _worst(device: str, time: np.ndarray, value: np.ndarray, limit: float, join_s: float, test: str, half_s: float = 0.0) -> Iterator[Finding]:
+def _worst(
+    device: str, time: np.ndarray, value: np.ndarray, limit: float, join_s: float, test: str, half_s: float = 0.0
+) -> Iterator[Finding]:
     """One finding for each run of values beyond a limit."""
     for first, last in _runs(time, np.abs(value) > limit, join_s):
         peak = value[first : last + 1][np.argmax(np.abs(value[first : last + 1]))]
@@ -120,6 +132,12 @@ def _gravity(grid: Grid, acc: Signal, vehicle: str) -> Iterator[Finding]:
     if len(at) < 5:
         return
     off = _median_around(np.sqrt(sum(mean**2 for _, mean, _ in means)) - GRAVITY, 2)
+    rough = np.max([spread for _, _, spread in means], axis=0) > ROUGH_ACC
+    if "gyro" in grid:
+        gyro = grid.signals["gyro"]
+        when, rate, _ = _windows(gyro.time, np.linalg.norm(gyro.value, axis=1), 2.0)
+        rough |= np.interp(at, when, rate) > ROUGH_RATE if len(when) else False
+    off = np.where(_median_around(rough.astype(float), 2) > 0, 0.0, off)
     if "attitude" in grid:
         attitude = grid.signals["attitude"]
         lean = [np.interp(at, attitude.time, np.abs(attitude.value[:, i])) for i in (0, 1)]
@@ -158,14 +176,30 @@ def _height(signal: Signal, vehicle: str, what: str) -> Iterator[Finding]:
     spike = np.where((back * ahead > 0) & close, np.minimum(np.abs(back), np.abs(ahead)), 0.0)
     limit = SPIKE_M.get(vehicle, 40.0)
     for i in np.flatnonzero(spike > limit):
-        yield Finding(device, float(time[i + 1]), float(time[i + 1]), f"one sample of {what} alone", float(spike[i]), limit, "spike")
+        yield Finding(
+            device,
+            float(time[i + 1]),
+            float(time[i + 1]),
+            f"one sample of {what} alone",
+            float(spike[i]),
+            limit,
+            "spike",
+        )
     if what == "barometer":
         at, mean, _ = _windows(time, h, 1.0)
         if len(at) > 2:
             rate = np.abs(np.diff(mean)) / np.diff(at) * (np.diff(at) < 1.6)
             lone = np.interp(at[1:], time[1:-1], spike) > limit  # a spike moves the mean of its second
             wide = np.array([((time[1:-1] > t - 2.1) & (time[1:-1] < t + 1.1) & (spike > limit)).any() for t in at[1:]])
-            yield from _worst(device, at[1:], np.where(lone | wide, 0.0, rate), CLIMB_M_S.get(vehicle, 60.0), 60.0, "climb rate that no such vehicle has", 1.0)
+            yield from _worst(
+                device,
+                at[1:],
+                np.where(lone | wide, 0.0, rate),
+                CLIMB_M_S.get(vehicle, 60.0),
+                60.0,
+                "climb rate that no such vehicle has",
+                1.0,
+            )
 
 
 def _beyond(signal: Signal, value: np.ndarray, limit: float, test: str) -> Iterator[Finding]:
@@ -191,11 +225,29 @@ def _repeats(grid: Grid, signal: Signal) -> Iterator[Finding]:
         turning = turned is not None and turned[last] - turned[first - 1] > REPEAT_TURN_RAD
         moving = moved is not None and moved[last] - moved[first - 1] > max(20.0, 5.0 * lasts / 5.0)
         noisy = lively and count > 10 * usual and count >= 2 * REPEATS
-        rest_too = signal.role in ("gnss.position", "gnss.height", "gnss.speed", "gnss.velocity", "gnss.climb", "wheel", "depth", "steering", "dvl", "barometer", "airspeed")
+        rest_too = signal.role in (
+            "gnss.position",
+            "gnss.height",
+            "gnss.speed",
+            "gnss.velocity",
+            "gnss.climb",
+            "wheel",
+            "depth",
+            "steering",
+            "dvl",
+            "barometer",
+            "airspeed",
+        )
         if count < REPEATS or lasts < REPEAT_S:
             continue
-        if (turning and not rest_too) or (moving and signal.role in ("gnss.position", "gnss.velocity", "dvl", "heading")) or (noisy and not (rest_too and float(np.abs(value[first]).max()) < 1e-9)):
-            yield Finding(device_of(signal), float(time[first - 1]), float(time[last]), "exact repeats", lasts, REPEAT_S, "frozen")
+        if (
+            (turning and not rest_too)
+            or (moving and signal.role in ("gnss.position", "gnss.velocity", "dvl", "heading"))
+            or (noisy and not (rest_too and float(np.abs(value[first]).max()) < 1e-9))
+        ):
+            yield Finding(
+                device_of(signal), float(time[first - 1]), float(time[last]), "exact repeats", lasts, REPEAT_S, "frozen"
+            )
 
 
 def _turned(grid: Grid, time: np.ndarray) -> np.ndarray | None:
@@ -225,8 +277,20 @@ def _steering(grid: Grid) -> Iterator[Finding]:
     rate = np.gradient(grid.integral("gyro")[:, 2], grid.time)
     straight = (np.abs(rate) < 0.02) & (grid.value(speed)[:, 0] > 5.0)
     angle = grid.value("steering")[:, 0][straight]
-    if len(angle) >= 40 and abs(np.median(angle)) > STEER_ZERO_RAD and np.median(np.abs(angle - np.median(angle))) < np.radians(1.0):
-        yield Finding("steering", grid.start_s, grid.end_s, "angle on straights", float(np.median(angle)), STEER_ZERO_RAD, "offset")
+    if (
+        len(angle) >= 40
+        and abs(np.median(angle)) > STEER_ZERO_RAD
+        and np.median(np.abs(angle - np.median(angle))) < np.radians(1.0)
+    ):
+        yield Finding(
+            "steering",
+            grid.start_s,
+            grid.end_s,
+            "angle on straights",
+            float(np.median(angle)),
+            STEER_ZERO_RAD,
+            "offset",
+        )
 
 
 def _airspeed(grid: Grid) -> Iterator[Finding]:
@@ -241,7 +305,15 @@ def _airspeed(grid: Grid) -> Iterator[Finding]:
         return
     ratio = float(np.median(air[there & (ground > 4.0)]) / np.median(ground[there & (ground > 4.0)]))
     if not AIR_SCALE[0] < ratio < AIR_SCALE[1]:
-        yield Finding("airspeed", grid.start_s, grid.end_s, "airspeed over ground speed", ratio, AIR_SCALE[0] if ratio < 1 else AIR_SCALE[1], "scale")
+        yield Finding(
+            "airspeed",
+            grid.start_s,
+            grid.end_s,
+            "airspeed over ground speed",
+            ratio,
+            AIR_SCALE[0] if ratio < 1 else AIR_SCALE[1],
+            "scale",
+        )
 
 
 def silences(signals: dict[str, Signal], pieces: list[tuple[float, float]], vehicle: str) -> Iterator[Finding]:
@@ -260,4 +332,12 @@ def silences(signals: dict[str, Signal], pieces: list[tuple[float, float]], vehi
             begun = time[0] < start
             stops = np.r_[start if begun else np.zeros(0), inside, end] if len(inside) or begun else np.zeros(0)
             for i in np.flatnonzero(np.diff(stops) > limit):
-                yield Finding(device, float(stops[i]), float(stops[i + 1]), "silence", float(stops[i + 1] - stops[i]), limit, "missing")
+                yield Finding(
+                    device,
+                    float(stops[i]),
+                    float(stops[i + 1]),
+                    "silence",
+                    float(stops[i + 1] - stops[i]),
+                    limit,
+                    "missing",
+                )

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from sensorfault.relations.axes import Mounting
 from sensorfault.relations.change import ENDS_S
 from sensorfault.relations.grid import STEP_S
 from sensorfault.relations.tests_of import Piece, Test
@@ -16,8 +17,13 @@ TENTH = 10.0  # a limit is this many scales
 # Constant differences of rates that are usual for such sensors, by the part of a relation: a calibration, no fault.
 USUAL_RATE = {"gyro": 0.02, "side": 0.1, "acc": 0.6, "accelerometer": 0.6, "wheel": 1.5, "climb": 0.3, "reckoned": 0.3}
 RATE_WINDOWS_S = (4.0, 15.0)
+SPARE, MOST_FACTOR, LEAST = 1.3, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
 BLOCK_S, BLOCKS = 20.0, 5  # blocks of 20 s, or a fifth of the piece
+NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
 CLASSES = ("copter", "wing", "car", "underwater")
+
+
+ByTest = dict[str, tuple[Test, list[Float[np.ndarray, " T"]]]]  # each test, with its changes in the pieces
 
 
 @dataclass(frozen=True)
@@ -30,15 +36,17 @@ class Bounds:
 
 @dataclass
 class Learned:
-    """What is known of one vehicle: usual change (`bias`) and limit of each test, lags, facts.
+    """What is known of one vehicle: usual rate of each relation, limit of each test, lags, facts.
 
     `own`: whether it comes from other, healthy logs (a model), not from the log that is judged.
     """
 
-    bias: dict[str, float] = field(default_factory=dict)
+    rates: dict[str, float] = field(default_factory=dict)
     limit: dict[str, float] = field(default_factory=dict)
     lags: dict[str, float] = field(default_factory=dict)
     facts: dict[str, float] = field(default_factory=dict)
+    mountings: dict[str, Mounting] = field(default_factory=dict)
+    vehicle: str = ""
 
 
 @cache
@@ -68,43 +76,98 @@ def block_maxima(moved: Float[np.ndarray, " T"]) -> Float[np.ndarray, " B"]:
     return np.array([np.nanmax(block) for block in blocks if np.isfinite(block).sum() >= 3])
 
 
-def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dict[str, float]) -> Learned:
-    """Limits of a log from itself: ten times its usual block maximum, within the bounds of its class."""
-    learned = Learned(lags=lags, facts=facts)
-    by_test: dict[str, tuple[Test, list[Float[np.ndarray, " T"]]]] = {}
+def of_healthy(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dict[str, float]) -> Learned:
+    """Limits from healthy driving: the largest change of each test times one factor for its family.
+
+    The factor is by how much a block left out, with its neighbours, exceeds the largest change of all others. So one
+    lively family does not make the others deaf.
+    """
+    by_test = _by_test(pieces)
+    rates = _rates(by_test)
+    learned = Learned(rates, lags=lags, facts=facts)
+    blocks: dict[str, Float[np.ndarray, " B"]] = {}
+    for key, (test, parts) in by_test.items():
+        bias = rates.get(test.relation.name, 0.0) * span_s(test)
+        maxima = np.concatenate([block_maxima(part - bias) for part in parts])
+        if len(maxima):
+            blocks[key] = maxima
+    factors: dict[str, float] = {}
+    for key, maxima in blocks.items():
+        family = by_test[key][0].relation.family
+        factors[family] = max(factors.get(family, 1.0), _left_out(maxima))
+    for key, maxima in blocks.items():
+        test = by_test[key][0]
+        known = bounds(vehicle, test.kind)
+        least = LEAST * TENTH * known.floor if known else 0.0
+        most = TENTH * known.ceiling if known else np.inf
+        scale = min(factors[test.relation.family], MOST_FACTOR) * SPARE * float(maxima.max())
+        learned.limit[key] = float(np.clip(scale, least, max(most, SPARE * float(maxima.max()))))
+    return learned
+
+
+def _left_out(maxima: Float[np.ndarray, " B"]) -> float:
+    """The largest block against the largest of those that share no window with it."""
+    worst = int(np.argmax(maxima))
+    others = np.delete(maxima, [i for i in (worst - 1, worst, worst + 1) if 0 <= i < len(maxima)])
+    return float(maxima[worst] / max(others.max(), 1e-12)) if len(others) else MOST_FACTOR
+
+
+def _by_test(pieces: list[Piece]) -> ByTest:
+    """The changes of each test in all pieces where it has some."""
+    found: ByTest = {}
     for piece in pieces:
         for k, test in enumerate(piece.tests):
-            by_test.setdefault(test.key, (test, []))[1].append(piece.moved[:, k])
-    rates = _rates([(test, np.concatenate(parts)) for test, parts in by_test.values()])
+            if np.isfinite(piece.moved[:, k]).any():
+                found.setdefault(test.key, (test, []))[1].append(piece.moved[:, k])
+    return found
+
+
+def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dict[str, float]) -> Learned:
+    """Limits of a log from itself: ten times its usual block maximum, within the bounds of its class."""
+    by_test = _by_test(pieces)
+    rates = _rates(by_test)
+    learned = Learned(rates, lags=lags, facts=facts)
     for key, (test, parts) in by_test.items():
         known = bounds(vehicle, test.kind)
-        bias = rates.get(test.relation.name, 0.0) * _span_s(test)
+        bias = rates.get(test.relation.name, 0.0) * span_s(test)
         maxima = np.concatenate([block_maxima(part - bias) for part in parts])
         if not len(maxima):
             continue
         scale = float(np.median(maxima))
         if known is not None:
             scale = float(np.clip(scale, known.floor, known.ceiling))
-        learned.bias[key], learned.limit[key] = bias, TENTH * scale
+        learned.limit[key] = TENTH * scale
     return learned
 
 
-def _span_s(test: Test) -> float:
+def span_s(test: Test) -> float:
     """From the middle of a window's first ticks to the middle of its last [s]; 0 for a change of slope."""
     return max(test.window_s - min(test.window_s / 4, ENDS_S), STEP_S) if test.relation.order == 1 else 0.0
 
 
-def _rates(every: list[tuple[Test, Float[np.ndarray, " T"]]]) -> dict[str, float]:
+def _rates(by_test: ByTest) -> dict[str, float]:
     """The usual rate at which the witnesses of each relation part: the median over windows of 4 or 15 s.
 
     Within what is usual for such sensors: a fault that fills the log must not pass for it.
     """
     found = {}
-    for test, moved in every:
+    for test, parts in by_test.values():
+        moved = np.concatenate(parts)
         if test.window_s in RATE_WINDOWS_S and test.relation.order == 1 and np.isfinite(moved).sum() > 50:
             most = usual_rate(test)
-            found[test.relation.name] = float(np.clip(np.nanmedian(moved) / _span_s(test), -most, most))
+            found[test.relation.name] = float(np.clip(np.nanmedian(moved) / span_s(test), -most, most))
     return found
+
+
+def rates_of(pieces: list[Piece], learned: Learned) -> dict[str, float]:
+    """The usual rates of a log, near those that healthy logs had: a zero differs a little from drive to drive."""
+    by_test = _by_test(pieces)
+    own, most = _rates(by_test), {test.relation.name: usual_rate(test) * NEAR for test, _ in by_test.values()}
+    known = learned.rates
+    return {
+        name: known[name] + float(np.clip(rate - known[name], -most[name], most[name])) if name in known else rate
+        for name, rate in own.items()
+    }
 
 
 def usual_rate(test: Test) -> float:

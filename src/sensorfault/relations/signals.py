@@ -72,9 +72,7 @@ def _speed_of_whom(found: dict[str, Signal]) -> dict[str, Signal]:
     return found
 
 
-def _roles(
-    sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]
-) -> list[tuple[str, tuple[str, ...]]]:
+def _roles(sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]) -> list[tuple[str, tuple[str, ...]]]:
     """The roles that a sensor's channels have, with the channels of each."""
     unit = {name: channels[i].unit for name, i in columns.items()}
     roles: list[tuple[str, tuple[str, ...]]] = []

@@ -38,7 +38,9 @@ class Relation:
         return None if left is None or right is None else (left, right)
 
 
-def residual(relation: Relation, left: Float[np.ndarray, " T"], right: Float[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
+def residual(
+    relation: Relation, left: Float[np.ndarray, " T"], right: Float[np.ndarray, " T"]
+) -> Float[np.ndarray, " T"]:
     """Left minus right."""
     return unwrapped(wrapped(left - right)) if relation.circular else left - right
 
@@ -58,12 +60,16 @@ def rows(keys: set[str], courses: bool) -> Iterator[Relation]:
 
 
 def _numbers(keys: set[str], role: str) -> list[str]:
-    return sorted(key.removeprefix(role) for key in keys if key.startswith(role) and key.removeprefix(role) in ("", "2", "3", "4"))
+    return sorted(
+        key.removeprefix(role) for key in keys if key.startswith(role) and key.removeprefix(role) in ("", "2", "3", "4")
+    )
 
 
 def _heights(keys: set[str], receivers: list[str]) -> Iterator[Relation]:
     acc = w.pulled(2, 2), ("accelerometer", "up")
-    heights = [(f"barometer{n}", w.measured(f"barometer{n}"), (f"barometer{n}", "")) for n in _numbers(keys, "barometer")]
+    heights = [
+        (f"barometer{n}", w.measured(f"barometer{n}"), (f"barometer{n}", "")) for n in _numbers(keys, "barometer")
+    ]
     heights += [("depth", w.measured("depth"), ("depth", ""))] if "depth" in keys else []
     for g in receivers:
         height, climb = w.measured(f"{g}.height"), w.summed(f"{g}.climb")
@@ -72,7 +78,15 @@ def _heights(keys: set[str], receivers: list[str]) -> Iterator[Relation]:
             yield _row(f"{g}.height | {name}", "height|baro", "up", 1, height, baro, {(g, "height"): 1, who: -1})
             yield _row(f"{name} | {g}.climb", "baro|climb", "up", 1, baro, climb, {who: 1, (g, "climb"): -1})
         yield _row(f"{g}.height | acceleration", "height|acc", "up2", 2, height, acc[0], {(g, "height"): 1, acc[1]: -1})
-        yield _row(f"{g}.climb | acceleration", "climb|acc", "vup", 1, w.measured(f"{g}.climb"), w.pulled(2, 1), {(g, "climb"): 1, acc[1]: -1})
+        yield _row(
+            f"{g}.climb | acceleration",
+            "climb|acc",
+            "vup",
+            1,
+            w.measured(f"{g}.climb"),
+            w.pulled(2, 1),
+            {(g, "climb"): 1, acc[1]: -1},
+        )
     for i, (name, baro, who) in enumerate(heights):
         yield _row(f"{name} | acceleration", "baro|acc", "up2", 2, baro, acc[0], {who: 1, acc[1]: -1})
         for other, second, whom in heights[i + 1 :]:
@@ -84,15 +98,56 @@ def _places(receivers: list[str]) -> Iterator[Relation]:
     for g in receivers:
         for i, axis in enumerate(("north", "east")):
             place, speed = w.measured(f"{g}.position", i), w.velocity(i, g)
-            yield _row(f"{g}.position | velocity, {axis}", "position|velocity", axis, 1, place, w.displaced(i, g), {(g, "position"): 1, (g, "velocity"): -1})
-            yield _row(f"{g}.velocity | acceleration, {axis}", "velocity|acc", "v" + axis, 1, speed, w.pulled(i, 1), {(g, "velocity"): 1, level: -1})
-            yield _row(f"{g}.position | acceleration, {axis}", "position|acc", axis + "2", 2, place, w.pulled(i, 2), {(g, "position"): 1, level: -1})
-            yield _row(f"{g}.position | dead reckoning, {axis}", "position|reckoned", axis, 1, place, w.reckoned(i), {(g, "position"): 1, ("dvl", ""): -1})
+            yield _row(
+                f"{g}.position | velocity, {axis}",
+                "position|velocity",
+                axis,
+                1,
+                place,
+                w.displaced(i, g),
+                {(g, "position"): 1, (g, "velocity"): -1},
+            )
+            yield _row(
+                f"{g}.velocity | acceleration, {axis}",
+                "velocity|acc",
+                "v" + axis,
+                1,
+                speed,
+                w.pulled(i, 1),
+                {(g, "velocity"): 1, level: -1},
+            )
+            yield _row(
+                f"{g}.position | acceleration, {axis}",
+                "position|acc",
+                axis + "2",
+                2,
+                place,
+                w.pulled(i, 2),
+                {(g, "position"): 1, level: -1},
+            )
+            yield _row(
+                f"{g}.position | dead reckoning, {axis}",
+                "position|reckoned",
+                axis,
+                1,
+                place,
+                w.reckoned(i),
+                {(g, "position"): 1, ("dvl", ""): -1},
+            )
 
 
 def _angles(keys: set[str], receivers: list[str], courses: bool) -> Iterator[Relation]:
     for i, name in enumerate(("roll", "pitch")):
-        yield _row(f"attitude.{name} | gyro", "tilt|gyro", name, 1, w.angle("attitude", i), w.turned(i), {("attitude", ""): 1, ("gyro", ""): -1}, lagged=False)
+        yield _row(
+            f"attitude.{name} | gyro",
+            "tilt|gyro",
+            name,
+            1,
+            w.angle("attitude", i),
+            w.turned(i),
+            {("attitude", ""): 1, ("gyro", ""): -1},
+            lagged=False,
+        )
     yaws: list[tuple[str, str, Witness, tuple[str, str]]] = []
     yaws += [("gyro", f"gyro{n}", w.turned(2, n), (f"gyro{n}", "")) for n in _numbers(keys, "gyro")]
     yaws += [("gyro", "yaw rate", w.turned(2), ("yaw_rate", ""))] if "yaw_rate" in keys and "gyro" not in keys else []
@@ -100,24 +155,76 @@ def _angles(keys: set[str], receivers: list[str], courses: bool) -> Iterator[Rel
     yaws += [("side", "side acceleration", w.leaned, ("accelerometer", "level"))]
     yaws += [("attitude", "attitude.yaw", w.angle("attitude", 2), ("attitude", ""))]
     yaws += [("heading", "heading", w.angle("heading", 0), ("heading", ""))] if "heading" in keys else []
-    yaws += [("compass", f"magnetometer{n}", w.compass(n), (f"magnetometer{n}", "")) for n in _numbers(keys, "magnetometer")]
+    yaws += [
+        ("compass", f"magnetometer{n}", w.compass(n), (f"magnetometer{n}", "")) for n in _numbers(keys, "magnetometer")
+    ]
     yaws += [("course", f"{g}.course", w.course(g), (g, "course")) for g in receivers] if courses else []
     for i, (kind, name, left, who) in enumerate(yaws):
         for other, second, right, whom in yaws[i + 1 :]:
             if kind == other == "gyro":
                 continue  # twins are compared by axis
-            yield _row(f"{name} | {second}", f"{kind}|{other}", "yaw", 1, left, right, {who: 1, whom: -1}, circular=True, lagged=other in ("course", "steering"))
+            yield _row(
+                f"{name} | {second}",
+                f"{kind}|{other}",
+                "yaw",
+                1,
+                left,
+                right,
+                {who: 1, whom: -1},
+                circular=True,
+                lagged=other in ("course", "steering"),
+            )
 
 
 def _speeds(keys: set[str], receivers: list[str]) -> Iterator[Relation]:
     wheel = ("wheel", "")
     for g in receivers:
-        yield _row(f"wheel | {g}.speed", "wheel|speed", "way", 1, w.summed("wheel"), w.run(g, 1), {wheel: 1, (g, "velocity"): -1})
-        yield _row(f"wheel | {g}.position", "wheel|position", "way", 1, w.summed("wheel"), w.path(g), {wheel: 1, (g, "position"): -1})
-        yield _row(f"airspeed | {g}.speed", "airspeed|speed", "air", 1, w.measured("airspeed"), w.run(g, 0), {("airspeed", ""): 1, (g, "velocity"): -1})
+        yield _row(
+            f"wheel | {g}.speed",
+            "wheel|speed",
+            "way",
+            1,
+            w.summed("wheel"),
+            w.run(g, 1),
+            {wheel: 1, (g, "velocity"): -1},
+        )
+        yield _row(
+            f"wheel | {g}.position",
+            "wheel|position",
+            "way",
+            1,
+            w.summed("wheel"),
+            w.path(g),
+            {wheel: 1, (g, "position"): -1},
+        )
+        yield _row(
+            f"airspeed | {g}.speed",
+            "airspeed|speed",
+            "air",
+            1,
+            w.measured("airspeed"),
+            w.run(g, 0),
+            {("airspeed", ""): 1, (g, "velocity"): -1},
+        )
         if "wheel" in keys or "attitude" not in keys:
-            yield _row(f"{g}.speed | acceleration", "speed|acc", "push", 1, w.run(g, 0), w.pushed, {(g, "velocity"): 1, ("accelerometer", "level"): -1})
-    yield _row("wheel | acceleration", "wheel|acc", "push", 1, w.measured("wheel"), w.pushed, {wheel: 1, ("accelerometer", "level"): -1})
+            yield _row(
+                f"{g}.speed | acceleration",
+                "speed|acc",
+                "push",
+                1,
+                w.run(g, 0),
+                w.pushed,
+                {(g, "velocity"): 1, ("accelerometer", "level"): -1},
+            )
+    yield _row(
+        "wheel | acceleration",
+        "wheel|acc",
+        "push",
+        1,
+        w.measured("wheel"),
+        w.pushed,
+        {wheel: 1, ("accelerometer", "level"): -1},
+    )
 
 
 def _twins(keys: set[str]) -> Iterator[Relation]:
@@ -128,4 +235,13 @@ def _twins(keys: set[str]) -> Iterator[Relation]:
                 for axis in range(3):
                     left, right = w.summed(role + first, axis), w.summed(role + second, axis)
                     who = (role + first, part[axis] if not first else ""), (role + second, "")
-                    yield _row(f"{role}{first} | {role}{second}, {'xyz'[axis]}", f"{role}|{role}", role + "xyz"[axis], 1, left, right, {who[0]: 1, who[1]: -1}, lagged=False)
+                    yield _row(
+                        f"{role}{first} | {role}{second}, {'xyz'[axis]}",
+                        f"{role}|{role}",
+                        role + "xyz"[axis],
+                        1,
+                        left,
+                        right,
+                        {who[0]: 1, who[1]: -1},
+                        lagged=False,
+                    )

@@ -13,6 +13,7 @@ from sensorfault.relations.grid import GRAVITY, Grid, angle_rates, integrated, t
 Witness = Callable[[Grid], "Float[np.ndarray, ' T'] | None"]
 FAST_S = 0.06  # an accelerometer sampled more slowly folds vibration into motion
 SLOW_FAST_S = 0.21  # allowed where the vehicle does not vibrate
+COMPASS_LEAN_RAD = 0.6  # leaning further, what is left of iron and levelling moves a compass
 MOVING_M_S = 3.0  # slower than this a course is noise
 
 
@@ -101,7 +102,8 @@ def compass(number: str = "") -> Witness:
         (x, y, z), lean = grid.value(key).T, grid.value("attitude")
         sr, cr, sp, cp = np.sin(lean[:, 0]), np.cos(lean[:, 0]), np.sin(lean[:, 1]), np.cos(lean[:, 1])
         forward, right = x * cp + y * sr * sp + z * cr * sp, y * cr - z * sr
-        return unwrapped(np.arctan2(-right, forward))
+        upright = np.maximum(np.abs(lean[:, 0]), np.abs(lean[:, 1])) < COMPASS_LEAN_RAD
+        return unwrapped(np.where(upright, np.arctan2(-right, forward), np.nan))
 
     return witness
 

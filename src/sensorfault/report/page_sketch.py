@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.core.types import FAULT, OK, UNKNOWN
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import MOTION, Event
 from sensorfault.events.event import UNKNOWN as UNKNOWN_WHICH
 from sensorfault.logs.table import Log

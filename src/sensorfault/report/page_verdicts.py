@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from html import escape
 
 from sensorfault.core.times import clock
-from sensorfault.core.types import FAULT, OK, UNKNOWN, VERDICTS
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN, VERDICTS
 from sensorfault.faults.fault import Fault
 from sensorfault.report.page_figure import FOOT, Json, time_axis
 from sensorfault.report.page_sketch import Sketch

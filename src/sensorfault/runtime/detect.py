@@ -7,11 +7,12 @@ from jaxtyping import Bool, Float
 
 from sensorfault.core.expect import LOG, MODEL, expect, wrong
 from sensorfault.core.times import clock
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.table import Log
+from sensorfault.runtime.compared import Comparison, compare
 from sensorfault.runtime.detector import Detector
 from sensorfault.runtime.extractor import context_of
 from sensorfault.runtime.model import Model
@@ -21,11 +22,14 @@ from sensorfault.runtime.runners import Stepper, StepResult, nothing_yet
 from sensorfault.runtime.tracker import Tracker
 
 
-def detect(model: Model, log: Log, progress: Progress | None = None) -> Detection:
-    """Judge every row of a log with a fitted model, whose monitor starts anew.
+def detect(model: Model | Comparison | Log, log: Log | None = None, progress: Progress | None = None) -> Detection:
+    """Judge every row of a log with a fitted model, whose monitor starts anew; or, of a log alone, with the default.
+
+    >>> sf.detect(log)  # what its sensors say of each other, with limits from the log itself and the class of vehicle
+    >>> sf.detect(model, log)
 
     Args:
-        model: what `fit` or `load` returned, for C channels of S sensors.
+        model: what `fit` or `load` returned, for C channels of S sensors; or the log, if there is no model.
         log: T rows in SI on one clock; it must have the model's channels, other channels are ignored.
         progress: called with the share that is done, 0 to 1.
 
@@ -37,8 +41,14 @@ def detect(model: Model, log: Log, progress: Progress | None = None) -> Detectio
         LogError: the log lacks a channel of the model, ticks at another rate, or is empty.
         TypeError: one of the two is something else.
     """
-    expect(model, Model, "detect: model", MODEL)
+    if isinstance(model, Log) and log is None:
+        return compare(model)
+    expect(model, (Model, Comparison), "detect: model", MODEL)
     expect(log, Log, "detect: log", LOG)
+    assert log is not None
+    if isinstance(model, Comparison):
+        return compare(log, model)
+    assert isinstance(model, Model)
     detector = Detector(model)
     detector.take(log, progress=progress)
     return detector.found()

@@ -1,16 +1,18 @@
 """One log through a model, part after part."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
 
+from sensorfault.core.verdicts import FAULT
+from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import Log
 from sensorfault.runtime.extractor import EventExtractor
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Progress, Replayed, replay_on
-from sensorfault.runtime.result import Detection, detected
+from sensorfault.runtime.result import Detection, Trace
 
 See = Callable[[Detection, float], None]  # a part that was judged, with all events so far; its share of what is judged
 
@@ -84,3 +86,32 @@ def joined(parts: list[Log]) -> Log:
 
 def _row(log: Log, i: int) -> Log:
     return replace(log, time=log.time[[i]], value=log.value[[i]], fresh=log.fresh[[i]])
+
+
+def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) -> Detection:
+    """The detection of a log that `model.take` returned, from the replay of it."""
+    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(result.channel) == FAULT)
+    lost = ~np.asarray(result.believed) & doubtful
+    return Detection(
+        log=log,
+        method=model.method,
+        watched=model.watched,
+        channel=np.asarray(result.channel),
+        sensor=np.asarray(result.sensor),
+        sample=np.asarray(result.sample),
+        motion=np.asarray(result.motion),
+        repaired=np.where(lost, np.nan, np.asarray(result.value)),
+        traces=_traces(model, result),
+        events=tuple(events),
+        residual=np.where(np.asarray(result.valid), np.asarray(result.residual), np.nan),
+        model=model,
+    )
+
+
+def _traces(model: Model, result: Replayed) -> tuple[Trace, ...]:
+    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (result.scores, result.limits))
+    return tuple(
+        Trace(name, channel, score[:, k], limit[:, k])
+        for k, (name, channel) in enumerate(model.tests)
+        if np.isfinite(score[:, k]).any()
+    )

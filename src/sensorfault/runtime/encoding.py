@@ -11,14 +11,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from sensorfault.logs.table import LogError
 from sensorfault.runtime import former, registry
+from sensorfault.runtime.saved import ModelError
 
 Tensors = dict[str, np.ndarray]
-
-
-class ModelError(LogError):
-    """A model that cannot be written, or a file that cannot be used: what is wrong with it, and what to do."""
 
 
 def encode(thing: Any, name: str, tensors: Tensors) -> Any:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.events.event import Event
 from sensorfault.logs.table import Log
 from sensorfault.runtime.event_context import EventContext

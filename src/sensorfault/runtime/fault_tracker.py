@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.events.classifier import FaultClassifier
 from sensorfault.events.event import Event
 from sensorfault.runtime.event_context import Accused, EventContext

@@ -1,6 +1,6 @@
 """What a model finds in a log."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -8,13 +8,14 @@ import numpy as np
 from jaxtyping import Float, Int8
 
 from sensorfault.core.plotting import draw
-from sensorfault.core.types import FAULT
 from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log, LogError
 from sensorfault.runtime import show, tables
-from sensorfault.runtime.model import Model
-from sensorfault.runtime.replay import Replayed
+
+if TYPE_CHECKING:
+    from sensorfault.runtime.compared import Coverage
+    from sensorfault.runtime.model import Model
 
 PER_ROW = ("channel", "sensor", "sample", "motion", "repaired", "traces")
 
@@ -69,6 +70,7 @@ class Detection:
         model: what judged the log; None for a detection that was made by hand.
         fitted_on_s: from when to when the log was assumed healthy to fit `model` on it [s]; None if it was not.
         rows_left_out: how many judged rows are not in `log`.
+        coverage: by the default method, which sensors were compared with which, and which were not and why.
     """
 
     log: Log
@@ -82,9 +84,10 @@ class Detection:
     traces: tuple[Trace, ...]
     events: tuple[Event, ...]
     residual: Float[np.ndarray, "T C"] | None = None
-    model: Model | None = None
+    model: "Model | None" = None
     fitted_on_s: tuple[float, float] | None = None
     rows_left_out: int = 0
+    coverage: "Coverage | None" = None
 
     if not TYPE_CHECKING:  # else a type checker would accept any name
 
@@ -122,6 +125,18 @@ class Detection:
         for name in PER_ROW:
             del bare.__dict__[name]
         return bare
+
+    def between(self, start_s: float = -np.inf, end_s: float = np.inf) -> "Detection":
+        """The rows with start_s <= time < end_s; events that end before are left out."""
+        rows = slice(*np.searchsorted(self.log.time, (start_s, end_s)))
+        return replace(
+            self,
+            log=self.log.between(start_s, end_s),
+            events=tuple(event for event in self.events if event.end_s is None or event.end_s >= start_s),
+            traces=tuple(Trace(one.name, one.channel, one.score[rows], one.limit[rows]) for one in self.traces),
+            residual=None if self.residual is None else self.residual[rows],
+            **{name: getattr(self, name)[rows] for name in PER_ROW if name != "traces"},
+        )
 
     def __repr__(self) -> str:
         return f"<Detection {show.line(self.log, self.method, self.events)}>"
@@ -202,32 +217,3 @@ class Detection:
             repaired=self.repaired[:, kept],
             residual=None if self.residual is None else self.residual[:, kept],
         )
-
-
-def detected(model: Model, log: Log, result: Replayed, events: Iterable[Event]) -> Detection:
-    """The detection of a log that `model.take` returned, from the replay of it."""
-    doubtful = np.isnan(log.value) | log.fresh | (np.asarray(result.channel) == FAULT)
-    lost = ~np.asarray(result.believed) & doubtful
-    return Detection(
-        log=log,
-        method=model.method,
-        watched=model.watched,
-        channel=np.asarray(result.channel),
-        sensor=np.asarray(result.sensor),
-        sample=np.asarray(result.sample),
-        motion=np.asarray(result.motion),
-        repaired=np.where(lost, np.nan, np.asarray(result.value)),
-        traces=_traces(model, result),
-        events=tuple(events),
-        residual=np.where(np.asarray(result.valid), np.asarray(result.residual), np.nan),
-        model=model,
-    )
-
-
-def _traces(model: Model, result: Replayed) -> tuple[Trace, ...]:
-    score, limit = (np.concatenate([np.asarray(x) for x in xs], axis=1) for xs in (result.scores, result.limits))
-    return tuple(
-        Trace(name, channel, score[:, k], limit[:, k])
-        for k, (name, channel) in enumerate(model.tests)
-        if np.isfinite(score[:, k]).any()
-    )

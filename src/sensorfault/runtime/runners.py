@@ -13,7 +13,8 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Bool, Float, Int8
 
 from sensorfault.core.monitor import Monitor, MonitorState
-from sensorfault.core.types import UNKNOWN, Report, Sample
+from sensorfault.core.types import Report, Sample
+from sensorfault.core.verdicts import UNKNOWN
 
 Kept = TypeVar("Kept")
 

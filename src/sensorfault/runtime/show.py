@@ -9,7 +9,7 @@ from jaxtyping import Int8
 
 from sensorfault.core import html
 from sensorfault.core.times import clock
-from sensorfault.core.types import VERDICTS
+from sensorfault.core.verdicts import VERDICTS
 from sensorfault.events.event import EVENT_HEADS, Event, event_cells
 from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
 from sensorfault.logs.table import Channel, Log, Sensor

@@ -19,14 +19,17 @@ from sensorfault.core.monitor import Monitor
 from sensorfault.core.types import Sample
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Channel, Sensor
+from sensorfault.relations.events import METHOD
 from sensorfault.runtime import former
-from sensorfault.runtime.encoding import ModelError, Tensors, decode, encode
+from sensorfault.runtime.compared import Comparison
+from sensorfault.runtime.encoding import Tensors, decode, encode
 from sensorfault.runtime.model import Model, owners
+from sensorfault.runtime.saved import ModelError, method_of, read_comparison, write_comparison
 
 FORMAT = 1
 
 
-def save(model: Model, path: Path | str) -> None:
+def save(model: Model | Comparison, path: Path | str) -> None:
     """Write a model to a file, whole or not at all.
 
     The header is JSON under the key `sensorfault`: format, versions, method, channels with units, sensors, summary, the
@@ -36,7 +39,11 @@ def save(model: Model, path: Path | str) -> None:
         ModelError: a part of the monitor that `load` would not know, or that holds what cannot be written.
         TypeError: something else than a model or a path.
     """
-    expect(model, Model, "save: model", MODEL)
+    expect(model, (Model, Comparison), "save: model", MODEL)
+    if isinstance(model, Comparison):
+        write_comparison(model, path)
+        return
+    assert isinstance(model, Model)
     expect_path(path, "save: path")
     tensors: Tensors = {}
     header = {
@@ -58,7 +65,7 @@ def save(model: Model, path: Path | str) -> None:
         save_file(tensors, temporary, {"sensorfault": text, "digest": _digest(text, tensors)})
 
 
-def load(path: Path | str) -> Model:
+def load(path: Path | str) -> Model | Comparison:
     """Read a model that `save` wrote.
 
     Raises:
@@ -68,8 +75,8 @@ def load(path: Path | str) -> Model:
     """
     expect_path(path, "load: path")
     path = Path(path)
-    if not path.is_file():
-        raise ModelError(f"{path}: there is no such model file; make one with 'sensorfault fit LOG --out {path.name}'.")
+    if method_of(path) == METHOD:
+        return read_comparison(path)
     refit = "fit the model again"
     try:
         with safe_open(path, framework="numpy") as file:

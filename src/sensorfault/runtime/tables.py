@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int8
 
 from sensorfault.core.extras import require
-from sensorfault.core.types import VERDICTS
+from sensorfault.core.verdicts import VERDICTS
 from sensorfault.events.event import Event
 from sensorfault.events.export.tables import frame
 from sensorfault.logs.table import Log, LogError

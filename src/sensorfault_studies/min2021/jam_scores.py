@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from sensorfault.calibration.open_loop import uncalibrated
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.evaluation.ranking import auc
 from sensorfault.logs.table import Log
 from sensorfault.runtime.model import Model

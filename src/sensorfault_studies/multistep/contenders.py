@@ -11,7 +11,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT, Report, Sample
+from sensorfault.core.types import Report, Sample
+from sensorfault.core.verdicts import FAULT
 from sensorfault.logs.table import Log
 from sensorfault.methods.height import height_observer, kinematic_observer, multistep_observer
 from sensorfault.methods.height.height_observer import Heights

@@ -11,7 +11,7 @@ from scipy.stats import chi2
 
 from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.core.types import FAULT
+from sensorfault.core.verdicts import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log

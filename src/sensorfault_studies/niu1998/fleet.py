@@ -10,7 +10,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int8
 
 from sensorfault.core.monitor import Monitor
-from sensorfault.core.types import FAULT, Report, Sample
+from sensorfault.core.types import Report, Sample
+from sensorfault.core.verdicts import FAULT
 from sensorfault.logs.table import Log
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.runners import fleet

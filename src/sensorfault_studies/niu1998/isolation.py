@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from sensorfault.core.types import UNKNOWN
+from sensorfault.core.verdicts import UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs.table import Log

@@ -11,7 +11,8 @@ from jax import lax
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.core.monitor import Monitor, MonitorState
-from sensorfault.core.types import FAULT, Sample, Score
+from sensorfault.core.types import Sample, Score
+from sensorfault.core.verdicts import FAULT
 from sensorfault.logs.table import Log
 from sensorfault.numerics.geodesy import ecef_to_geodetic, enu_axes
 from sensorfault.runtime.runners import samples

@@ -9,7 +9,8 @@ from jax import lax
 from jaxtyping import Array, Bool, Float
 
 from sensorfault.core.monitor import Monitor, MonitorState
-from sensorfault.core.types import FAULT, Residual, Sample
+from sensorfault.core.types import Residual, Sample
+from sensorfault.core.verdicts import FAULT
 from sensorfault.numerics.local import east_north
 from sensorfault.runtime.runners import samples
 from sensorfault_studies.xu2023.scenario import Scenario

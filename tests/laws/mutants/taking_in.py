@@ -8,7 +8,8 @@ import jax.numpy as jnp
 from laws.guests.learner import Learned, Nlms, Step
 from laws.mutants.judging import Stateless
 from sensorfault.core.monitor import Monitor
-from sensorfault.core.types import FAULT, Residual, Sample, Trust
+from sensorfault.core.types import Residual, Sample, Trust
+from sensorfault.core.verdicts import FAULT
 from sensorfault.stages.recovery.drop import Drop
 
 

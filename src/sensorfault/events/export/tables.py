@@ -21,6 +21,8 @@ _SCHEMA = {
     "peak_score": float,
     "limit": float,
     "method": str,
+    "found_by": str,
+    "candidates": str,
 }
 
 
@@ -43,4 +45,5 @@ def frame(events: Sequence[Event]) -> "polars.DataFrame":
     """A row an event, a column a field of Event, null where there is no value."""
     import polars as pl
 
-    return pl.DataFrame([event.as_dict() for event in events], schema=_SCHEMA)
+    rows = [{**event.as_dict(), "candidates": ", ".join(event.candidates) or None} for event in events]
+    return pl.DataFrame(rows, schema=_SCHEMA)

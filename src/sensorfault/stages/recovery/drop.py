@@ -3,7 +3,8 @@
 import equinox as eqx
 from jaxtyping import Array, Bool
 
-from sensorfault.core.types import OK, Residual, Sample, Trust, Verdict
+from sensorfault.core.types import Residual, Sample, Trust, Verdict
+from sensorfault.core.verdicts import OK
 
 
 class Drop(eqx.Module):

@@ -6,7 +6,8 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.core.types import FAULT, NEVER, OK, Residual, Sample, Trust, Verdict
+from sensorfault.core.types import NEVER, Residual, Sample, Trust, Verdict
+from sensorfault.core.verdicts import FAULT, OK
 
 
 class _Since(NamedTuple):

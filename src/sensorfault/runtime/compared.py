@@ -1,0 +1,226 @@
+"""The default method on a log, or on its consecutive parts: events, verdicts, and what could not be compared."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int8
+
+from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
+from sensorfault.events.event import Event
+from sensorfault.logs.reading_notes import ReadingNotes
+from sensorfault.logs.table import Log, LogError
+from sensorfault.relations.events import METHOD, events_of, sensor_of
+from sensorfault.relations.judge import Judged, fitted, judge
+from sensorfault.relations.limits import Learned
+from sensorfault.runtime.result import Detection, Trace
+
+OVERLAP_S = 70.0  # a part is judged with the end of the part before it, so that the longest window spans the seam
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What the default knows of a vehicle; `learned` is None where no healthy log was given.
+
+    Args:
+        learned: usual changes, limits, lags and facts from healthy logs.
+        summary: how it was fitted; for people.
+    """
+
+    learned: Learned | None = None
+    summary: dict[str, Any] = field(default_factory=dict)
+    method: str = METHOD
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """Which sensors were compared with which others, and which were not and why.
+
+    `sentences`: what else to know of the answer: where the limits come from, what is usual for this vehicle.
+    """
+
+    compared: dict[str, tuple[str, ...]]
+    not_compared: dict[str, str]
+    sentences: tuple[str, ...] = ()
+
+
+def comparison_of(*logs: Log) -> Comparison:
+    """What healthy logs of one vehicle teach the default method.
+
+    Raises:
+        LogError: no two sensors of it can be compared.
+    """
+    learned = fitted(list(logs))
+    names = ", ".join(log.name for log in logs)
+    if not learned.limit:
+        raise LogError(f"{names}: no two of its sensors can be compared; 'sensorfault detect' on it says why.")
+    seconds = sum(log.duration_s for log in logs)
+    return Comparison(learned, {"training_log": names, "training_s": seconds, "vehicle": learned.vehicle})
+
+
+def compare(log: Log, comparison: Comparison | None = None) -> Detection:
+    """Judge a log by what its sensors say of each other. Without a fitted comparison the limits are the log's own.
+
+    Raises:
+        LogError: the log has no rows.
+    """
+    if not len(log):
+        raise LogError(f"{log.name} has no rows; give a log that has some.")
+    return _detection(log, judge(log, comparison.learned if comparison else None))
+
+
+class ComparingDetector:
+    """Judges consecutive parts of one log; the first part sets the limits if no comparison was fitted."""
+
+    def __init__(self, comparison: Comparison | None = None, see: Any = None) -> None:
+        self._learned = comparison.learned if comparison else None
+        self._see = see
+        self._tail: Log | None = None
+        self._first: Log | None = None
+        self._last: Detection | None = None
+        self._events: list[Event] = []
+        self._rows = self._parts = 0
+
+    def take(self, part: Log, share: float = 1.0) -> None:
+        """Judge the next part. `share`: how much of all that is judged it is."""
+        log = part if self._tail is None else _joined(self._tail, part)
+        judged = judge(log, self._learned)
+        self._learned = self._learned or judged.learned
+        found = _detection(log, judged).between(float(part.time[0]))
+        self._add(found.events, float(part.time[0]))
+        self._first = self._first or part.between(end_s=float(part.time[min(1, len(part) - 1)]))
+        self._rows, self._parts = self._rows + len(part), self._parts + 1
+        self._tail = log.between(float(log.time[-1]) - OVERLAP_S)
+        self._last = replace(found, events=tuple(self._events))
+        if self._see is not None:
+            self._see(self._last, share)
+
+    def found(self, said: ReadingNotes | None = None) -> Detection:
+        """The result so far; with all rows if there was only one part."""
+        assert self._last is not None and self._first is not None
+        found = self._last
+        if said is not None:
+            notes = tuple(dict.fromkeys((*said.notes, *found.log.notes)))
+            found = replace(found, log=replace(found.log, notes=notes, damage=said.damage))
+        if self._parts == 1:
+            return found
+        last = found.log.between(float(found.log.time[-1]))
+        return found.without_rows(_joined(self._first, last), self._rows)
+
+    def _add(self, events: tuple[Event, ...], start_s: float) -> None:
+        """Events of the next part; one that was ongoing at the seam goes on."""
+        for event in events:
+            before = next((e for e in self._events if e.end_s is None and e.sensor == event.sensor), None)
+            if before is not None and event.start_s <= start_s + OVERLAP_S:
+                self._events[self._events.index(before)] = replace(before, end_s=event.end_s)
+            else:
+                self._events.append(event)
+        over = [
+            e
+            for e in self._events
+            if e.end_s is None and not any(e.sensor == n.sensor and n.end_s is None for n in events)
+        ]
+        for event in over:
+            self._events[self._events.index(event)] = replace(event, end_s=max(event.start_s, start_s))
+
+
+def _joined(first: Log, second: Log) -> Log:
+    return replace(
+        second,
+        time=np.concatenate([first.time, second.time]),
+        value=np.concatenate([first.value, second.value]),
+        fresh=np.concatenate([first.fresh, second.fresh]),
+    )
+
+
+def _detection(log: Log, judged: Judged) -> Detection:
+    sensors = [sensor.name for sensor in log.sensors]
+    coverage = _coverage(log, judged)
+    tested = _tested(log, judged, sensors)
+    events = events_of(judged, float(log.time[-1]))
+    sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
+    sample = np.where(tested.any(axis=1), OK, UNKNOWN).astype(np.int8)
+    for event in events:
+        rows = slice(*np.searchsorted(log.time, (event.start_s, np.inf if event.end_s is None else event.end_s + 1e-9)))
+        sample[rows] = FAULT
+        if event.sensor in sensors:
+            sensor[rows, sensors.index(event.sensor)] = FAULT
+    owner = [sensors.index(channel.sensor) for channel in log.channels]
+    channel = sensor[:, owner]
+    return Detection(
+        log=log,
+        method=METHOD,
+        watched=tuple(one.sensor in coverage.compared for one in log.channels),
+        channel=channel,
+        sensor=sensor,
+        sample=sample,
+        motion=np.full(len(log), UNKNOWN, np.int8),
+        repaired=np.where(channel == FAULT, np.nan, log.value),
+        traces=_traces(log, judged),
+        events=events,
+        coverage=coverage,
+    )
+
+
+def _coverage(log: Log, judged: Judged) -> Coverage:
+    partners: dict[str, dict[str, None]] = {}
+    for piece in judged.pieces:
+        for test in piece.tests:
+            devices = dict.fromkeys(sensor_of(device, judged.signals) for (device, _), _ in test.relation.blame)
+            for one in devices:
+                partners.setdefault(one, {}).update(dict.fromkeys(other for other in devices if other != one))
+    for signal in judged.signals.values():
+        partners.setdefault(signal.sensor, {}) if signal.sensor in partners else None
+    compared = {name: tuple(others) or (name,) for name, others in partners.items()}
+    roles = {signal.sensor for signal in judged.signals.values()}
+    why = next((m.why for m in judged.mountings.values() if m.turn is None), "")
+    reasons = {}
+    for sensor in log.sensors:
+        if sensor.name in compared:
+            continue
+        if sensor.name not in roles:
+            reasons[sensor.name] = "no relation to other sensors is known"
+        elif not judged.pieces:
+            reasons[sensor.name] = "the log is too short"
+        else:
+            reasons[sensor.name] = why or "no other sensor measures the same"
+    return Coverage(compared, reasons)
+
+
+def _tested(log: Log, judged: Judged, sensors: list[str]) -> Int8[np.ndarray, "T S"]:
+    """Rows at which some comparison of a sensor had something to compare."""
+    tested = np.zeros((len(log), len(sensors)), bool)
+    for piece, score in zip(judged.pieces, judged.scores, strict=True):
+        if not piece.tests:
+            continue
+        tick = np.searchsorted(piece.grid.time, log.time)
+        inside = (log.time >= piece.grid.start_s) & (log.time <= piece.grid.end_s)
+        tick = np.clip(tick, 0, len(piece.grid.time) - 1)
+        for i, sensor in enumerate(sensors):
+            mine = [
+                any(sensor_of(device, judged.signals) == sensor for (device, _), _ in test.relation.blame)
+                for test in piece.tests
+            ]
+            if any(mine):
+                tested[:, i] |= inside & np.isfinite(score[:, mine]).any(axis=1)[tick]
+    return tested
+
+
+def _traces(log: Log, judged: Judged) -> tuple[Trace, ...]:
+    """For each relation the largest of its windows, in units of the limit."""
+    names = list(dict.fromkeys(test.relation.name for piece in judged.pieces for test in piece.tests))
+    traces = []
+    for name in names:
+        score: Float[np.ndarray, " T"] = np.full(len(log), np.nan)
+        for piece, scores in zip(judged.pieces, judged.scores, strict=True):
+            mine = [k for k, test in enumerate(piece.tests) if test.relation.name == name]
+            if not mine:
+                continue
+            there = np.isfinite(scores[:, mine])
+            most = np.where(there, np.abs(np.nan_to_num(scores[:, mine])), 0.0).max(axis=1)
+            most[~there.any(axis=1)] = np.nan
+            rows = (log.time >= piece.grid.time[0]) & (log.time <= piece.grid.time[-1])
+            score[rows] = most[np.searchsorted(piece.grid.time, log.time[rows])]
+        if np.isfinite(score).any():
+            traces.append(Trace(name, None, score, np.ones(len(log))))
+    return tuple(traces)

@@ -1,0 +1,122 @@
+"""Models of the default method as files, and what method a model file is of; read without a compiler."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sensorfault.core.expect import expect_path
+from sensorfault.core.files import appearing
+from sensorfault.logs.table import LogError
+from sensorfault.relations.axes import Mounting
+from sensorfault.relations.events import METHOD
+from sensorfault.relations.limits import Learned
+from sensorfault.runtime.compared import Comparison
+
+KEY, FORMAT = "sensorfault", 1
+LONGEST = 1 << 26  # bytes of a header; more is no model of ours
+
+
+class ModelError(LogError):
+    """A model that cannot be written, or a file that cannot be used: what is wrong with it, and what to do."""
+
+
+def header_of(path: Path) -> dict[str, Any]:
+    """The header of a model file: all that it says but its arrays.
+
+    Raises:
+        ModelError: there is no such file, or it is no model.
+    """
+    if not path.is_file():
+        raise ModelError(f"{path}: there is no such model file; make one with 'sensorfault fit LOG --out {path.name}'.")
+    refused = ModelError(f"{path}: not a model file, or truncated; fit the model again.")
+    with path.open("rb") as file:
+        length = int.from_bytes(file.read(8), "little")
+        if not 2 <= length <= min(LONGEST, path.stat().st_size):
+            raise refused
+        text = file.read(length)
+    try:
+        meta = json.loads(text).get("__metadata__", {})
+        if KEY not in meta:
+            raise ModelError(f"{path}: a safetensors file, but not of sensorfault; give a file that 'fit' wrote.")
+        header = json.loads(meta[KEY])
+    except (ValueError, AttributeError, TypeError, RecursionError):
+        raise refused from None
+    if not isinstance(header, dict):
+        raise refused
+    return {**header, "digest": meta.get("digest"), "text": meta[KEY]}
+
+
+def method_of(path: Path) -> str:
+    """The method that a model file is of.
+
+    Raises:
+        ModelError: as `header_of`.
+    """
+    return str(header_of(path).get("method", ""))
+
+
+def write_comparison(comparison: Comparison, path: Path | str) -> None:
+    """Write a fitted comparison, whole or not at all.
+
+    Raises:
+        ModelError: it was not fitted.
+        TypeError: something else than a path.
+    """
+    expect_path(path, "save: path")
+    learned = comparison.learned
+    if learned is None:
+        raise ModelError("this comparison was not fitted; fit one with sf.fit(log).")
+    header = {
+        "format": FORMAT,
+        "method": METHOD,
+        "rates": learned.rates,
+        "limit": learned.limit,
+        "lags": learned.lags,
+        "facts": learned.facts,
+        "mountings": {number: _mounting_out(one) for number, one in learned.mountings.items()},
+        "vehicle": learned.vehicle,
+        "summary": comparison.summary,
+    }
+    text = json.dumps(header, sort_keys=True)
+    meta = {"__metadata__": {KEY: text, "digest": hashlib.sha256(text.encode()).hexdigest()}}
+    whole = json.dumps(meta).encode()
+    with appearing(Path(path)) as temporary:
+        temporary.write_bytes(len(whole).to_bytes(8, "little") + whole)
+
+
+def read_comparison(path: Path | str) -> Comparison:
+    """Read a comparison that `write_comparison` wrote.
+
+    Raises:
+        ModelError: it is damaged, changed, or of another format.
+    """
+    header = header_of(Path(path))
+    if header["digest"] != hashlib.sha256(header["text"].encode()).hexdigest():
+        raise ModelError(f"{path}: its contents were changed after it was written; fit the model again.")
+    if header.get("format") != FORMAT:
+        raise ModelError(
+            f"{path}: written in format {header.get('format')}, this version reads {FORMAT}; fit it again."
+        )
+    try:
+        numbers = {
+            name: {str(k): float(v) for k, v in header[name].items()} for name in ("rates", "limit", "lags", "facts")
+        }
+        mountings = {str(k): _mounting_in(v) for k, v in header["mountings"].items()}
+        return Comparison(
+            Learned(**numbers, mountings=mountings, vehicle=str(header["vehicle"])), dict(header["summary"])
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise ModelError(f"{path}: its header does not describe a model ({error}); fit the model again.") from None
+
+
+def _mounting_out(one: Mounting) -> dict[str, Any]:
+    turn = None if one.turn is None else one.turn.tolist()
+    return {"turn": turn, "gravity": one.gravity, "forward": one.forward, "why": one.why}
+
+
+def _mounting_in(one: dict[str, Any]) -> Mounting:
+    turn = None if one["turn"] is None else np.asarray(one["turn"], float).reshape(3, 3)
+    return Mounting(turn, float(one["gravity"]), bool(one["forward"]), str(one["why"]))
