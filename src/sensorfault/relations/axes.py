@@ -24,12 +24,13 @@ class Mounting:
     """The axes of one inertial unit.
 
     `turn`: rotation to forward, right, down; None if undecided. `gravity`: -1 where the accelerometer has the sign of
-    gravity. `forward`: whether the forward axis is known, not only the vertical one. `why`: what was lacking.
+    gravity. `forward`, `yaw`: whether the forward axis and the sign of turns are known, not only the vertical axis. `why`: what was lacking.
     """
 
     turn: Float[np.ndarray, "3 3"] | None
     gravity: float = 1.0
     forward: bool = True
+    yaw: bool = True
     why: str = ""
 
 
@@ -141,18 +142,14 @@ def _by_course(signals: dict[str, Signal], gyro: Signal, acc: Signal | None) -> 
     if np.abs(mean[axis]) < 0.7 * GRAVITY:
         return Mounting(None, why="no axis of the accelerometer carries gravity")
     turning = _turning(signals, gyro.value[:, axis], gyro.time)
-    if turning == 0.0:
-        return Mounting(None, why="no turns with a course to compare: the sign of the yaw rate is unknown")
     down = np.zeros(3)
-    down[axis] = turning
+    down[axis] = turning or -np.sign(mean[axis])
     gravity = -1.0 if mean @ down > 0 else 1.0
     forward, sure = _forward(signals, acc, gravity, axis)
-    return Mounting(
-        np.stack([forward, np.cross(down, forward), down]),
-        gravity,
-        sure,
-        "" if sure else "too little braking: the forward axis is unknown",
-    )
+    lacks = [] if turning else ["no turns with a course to compare: the sign of the yaw rate is unknown"]
+    lacks += [] if sure else ["too little braking: the forward axis is unknown"]
+    turn = np.stack([forward, np.cross(down, forward), down])
+    return Mounting(turn, gravity, sure, bool(turning), "; ".join(lacks))
 
 
 def _turning(signals: dict[str, Signal], rate: Float[np.ndarray, " n"], time: Float[np.ndarray, " n"]) -> float:

@@ -12,7 +12,7 @@ MOST = 5.0  # a group of tests counts no more than this many limits
 EXTRA = 0.15  # price of a further part of one device that must be wrong
 EXTRA_RECEIVER = 0.02  # a receiver is often wrong as a whole
 MORE, RATIO = 0.05, 1.6  # the next explanation must cost this much more for a name
-PAIR = 1.0  # price of a second device
+QUIET = 0.08  # price if what must be wrong shows nowhere else where it should
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,7 @@ class Isolation:
             for part, sign in test.relation.blame:
                 self._gain[k, column[part]] = sign
         self._mine = {device: [column[part] for part in parts if part[0] == device] for device in self.devices}
+        self._family = [test.relation.family for test in tests]
         groups: dict[tuple[str, float], list[int]] = {}
         for k, test in enumerate(tests):
             groups.setdefault((test.relation.family, test.window_s), []).append(k)
@@ -65,12 +66,16 @@ class Isolation:
         """What the device's shifts, fitted by least squares in each family and window, leave unexplained."""
         mine = self._mine[device]
         total, used = 0.0, set()
+        shown: dict[int, list[tuple[str, float]]] = {}
         for group in self._groups:
             group = group[there[group]]
             if not len(group):
                 continue
             left = z[group]
             most = float(np.abs(left).max())
+            for part in np.flatnonzero(np.abs(self._gain[np.ix_(group, mine)]).sum(axis=0)):
+                seen = np.abs(left[self._gain[group, mine[part]] != 0]).max()
+                shown.setdefault(mine[part], []).append((self._family[group[0]], float(seen)))
             left = left * min(1.0, MOST / max(most, 1e-12))
             if most > DEAD:
                 gain = self._gain[np.ix_(group, mine)] / limit[group, None]
@@ -82,4 +87,15 @@ class Isolation:
                     left = left - explained.sum(axis=1)
             total += float((np.maximum(np.abs(left) - DEAD, 0.0) ** 2).sum())
         further = EXTRA_RECEIVER if device.startswith("gnss") else EXTRA
-        return total + further * max(len(used) - 1, 0)
+        return total + further * max(len(used) - 1, 0) + (QUIET if _quiet(shown) else 0.0)
+
+
+def _quiet(shown: dict[int, list[tuple[str, float]]]) -> bool:
+    """Whether a part that is over its limit in one family of tests is not to be seen at all in another."""
+    for tests in shown.values():
+        by_family: dict[str, float] = {}
+        for family, size in tests:
+            by_family[family] = max(by_family.get(family, 0.0), size)
+        if max(by_family.values()) > 1 and min(by_family.values()) < DEAD:
+            return True
+    return False

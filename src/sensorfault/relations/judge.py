@@ -63,6 +63,8 @@ def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
         if vehicle != "copter":
             facts_of.setdefault("acceleration.period", SLOW_FAST_S)
         unknown = {role + number for number, m in mountings.items() if m.turn is None for role in axes.INERTIAL}
+        unknown |= {"gyro" + number for number, m in mountings.items() if not m.yaw}
+        facts_of["forward"] = float(all(m.forward for m in mountings.values()))
         used = {key: signal for key, signal in signals.items() if key not in unknown}
         for start, end in pieces_of(used):
             if end - start < SHORTEST_S:

@@ -148,32 +148,29 @@ def _angles(keys: set[str], receivers: list[str], courses: bool) -> Iterator[Rel
             {("attitude", ""): 1, ("gyro", ""): -1},
             lagged=False,
         )
-    yaws: list[tuple[str, str, Witness, tuple[str, str]]] = []
-    yaws += [("gyro", f"gyro{n}", w.turned(2, n), (f"gyro{n}", "")) for n in _numbers(keys, "gyro")]
-    yaws += [("gyro", "yaw rate", w.turned(2), ("yaw_rate", ""))] if "yaw_rate" in keys and "gyro" not in keys else []
-    yaws += [("steering", "steering", w.steered, ("steering", ""))] if "steering" in keys else []
-    yaws += [("side", "side acceleration", w.leaned, ("accelerometer", "level"))]
-    yaws += [("attitude", "attitude.yaw", w.angle("attitude", 2), ("attitude", ""))]
-    yaws += [("heading", "heading", w.angle("heading", 0), ("heading", ""))] if "heading" in keys else []
-    yaws += [
-        ("compass", f"magnetometer{n}", w.compass(n), (f"magnetometer{n}", "")) for n in _numbers(keys, "magnetometer")
-    ]
-    yaws += [("course", f"{g}.course", w.course(g), (g, "course")) for g in receivers] if courses else []
-    for i, (kind, name, left, who) in enumerate(yaws):
-        for other, second, right, whom in yaws[i + 1 :]:
+    yaws: list[tuple[str, str, Witness, tuple[tuple[str, str], ...]]] = []
+    # What turns an angle of the wheels or a side force into a yaw is a suspect, too: the speed.
+    speed = "wheel" if "wheel" in keys else "gnss"
+    yaws += [("gyro", f"gyro{n}", w.turned(2, n), ((f"gyro{n}", ""),)) for n in _numbers(keys, "gyro")]
+    if "yaw_rate" in keys and "gyro" not in keys:
+        yaws.append(("gyro", "yaw rate", w.turned(2), (("yaw_rate", ""),)))
+    if "steering" in keys:
+        yaws.append(("steering", "steering", w.steered, (("steering", ""), (speed, "steered"))))
+    yaws.append(("side", "side acceleration", w.leaned, (("accelerometer", "level"), (speed, "leaned"))))
+    yaws.append(("attitude", "attitude.yaw", w.angle("attitude", 2), (("attitude", ""),)))
+    if "heading" in keys:
+        yaws.append(("heading", "heading", w.angle("heading", 0), (("heading", ""),)))
+    for n in _numbers(keys, "magnetometer"):
+        yaws.append(("compass", f"magnetometer{n}", w.compass(n), ((f"magnetometer{n}", ""),)))
+    yaws += [("course", f"{g}.course", w.course(g), ((g, "course"),)) for g in receivers] if courses else []
+    for i, (kind, name, left, mine) in enumerate(yaws):
+        for other, second, right, theirs in yaws[i + 1 :]:
             if kind == other == "gyro":
                 continue  # twins are compared by axis
-            yield _row(
-                f"{name} | {second}",
-                f"{kind}|{other}",
-                "yaw",
-                1,
-                left,
-                right,
-                {who: 1, whom: -1},
-                circular=True,
-                lagged=other in ("course", "steering"),
-            )
+            blame = dict.fromkeys(theirs, -1.0) | dict.fromkeys(mine, 1.0)
+            lagged = other in ("course", "steering")
+            name_of = f"{name} | {second}"
+            yield _row(name_of, f"{kind}|{other}", "yaw", 1, left, right, blame, circular=True, lagged=lagged)
 
 
 def _speeds(keys: set[str], receivers: list[str]) -> Iterator[Relation]:

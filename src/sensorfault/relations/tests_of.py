@@ -10,6 +10,7 @@ from sensorfault.relations.change import WINDOWS_2_S, WINDOWS_S, change
 from sensorfault.relations.grid import Grid, wrapped
 from sensorfault.relations.table import Relation, residual, rows
 
+DRIFTING, LONGEST_DRIFTING_S = {"acc", "side", "steering", "accelerometer"}, 15.0
 SHORT = 1.3  # a window is used where the piece is this many times longer
 
 
@@ -40,6 +41,14 @@ class Piece:
     moved: Float[np.ndarray, "T K"]
 
 
+def _windows(relation: Relation) -> tuple[float, ...]:
+    """Windows of a relation: no long ones where a constant error grows with the motion, not with the time."""
+    if relation.order == 2:
+        return WINDOWS_2_S
+    short = DRIFTING & set(relation.kind.split("|"))
+    return tuple(window for window in WINDOWS_S if not short or window <= LONGEST_DRIFTING_S)
+
+
 def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
     """All tests of a piece. `lags`: of each relation [s]; one that is not there is fitted and added."""
     tests, moved = [], []
@@ -54,7 +63,7 @@ def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
                 lags[relation.name] = lag.fitted(left, right, relation.order)
             right = lag.shifted(right, lags[relation.name])
         d = residual(relation, left, right)
-        for window_s in WINDOWS_S if relation.order == 1 else WINDOWS_2_S:
+        for window_s in _windows(relation):
             if duration < SHORT * window_s:
                 continue
             one = change(d, window_s, relation.order)

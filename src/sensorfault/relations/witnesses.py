@@ -156,7 +156,9 @@ def run(device: str, order: int) -> Witness:
 
 def pushed(grid: Grid) -> Float[np.ndarray, " T"] | None:
     """Integral of the forward acceleration of a vehicle that stays level."""
-    if "accelerometer" not in grid or "attitude" in grid or grid.signals["accelerometer"].period_s > SLOW_FAST_S:
+    if "accelerometer" not in grid or "attitude" in grid or not grid.facts.get("forward", 1.0):
+        return None
+    if grid.signals["accelerometer"].period_s > SLOW_FAST_S:
         return None
     return grid.integral("accelerometer")[:, 0]
 
@@ -238,7 +240,9 @@ def steered(grid: Grid) -> Float[np.ndarray, " T"] | None:
 def leaned(grid: Grid) -> Float[np.ndarray, " T"] | None:
     """Yaw of a vehicle on wheels by its side acceleration: integral of a_right / v."""
     speed = _speed(grid)
-    if "accelerometer" not in grid or "attitude" in grid or speed is None:
+    if "accelerometer" not in grid or "gyro" not in grid or "attitude" in grid or speed is None:
+        return None
+    if not grid.facts.get("forward", 1.0):
         return None
     acc = grid.signals["accelerometer"]
     v = np.interp(acc.time, *speed)

@@ -114,9 +114,9 @@ def read_comparison(path: Path | str) -> Comparison:
 
 def _mounting_out(one: Mounting) -> dict[str, Any]:
     turn = None if one.turn is None else one.turn.tolist()
-    return {"turn": turn, "gravity": one.gravity, "forward": one.forward, "why": one.why}
+    return {"turn": turn, "gravity": one.gravity, "forward": one.forward, "yaw": one.yaw, "why": one.why}
 
 
 def _mounting_in(one: dict[str, Any]) -> Mounting:
     turn = None if one["turn"] is None else np.asarray(one["turn"], float).reshape(3, 3)
-    return Mounting(turn, float(one["gravity"]), bool(one["forward"]), str(one["why"]))
+    return Mounting(turn, float(one["gravity"]), bool(one["forward"]), bool(one["yaw"]), str(one["why"]))
