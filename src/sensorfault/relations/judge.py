@@ -64,6 +64,7 @@ def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
             facts_of.setdefault("acceleration.period", SLOW_FAST_S)
         unknown = {role + number for number, m in mountings.items() if m.turn is None for role in axes.INERTIAL}
         unknown |= {"gyro" + number for number, m in mountings.items() if not m.yaw}
+        facts_of["mounted"] = float(not any(m.why for m in mountings.values()))
         facts_of["forward"] = float(all(m.forward for m in mountings.values()))
         used = {key: signal for key, signal in signals.items() if key not in unknown}
         for start, end in pieces_of(used):
@@ -131,7 +132,7 @@ def _leave_out(piece: Piece, score: Float[np.ndarray, "T K"], found: list[Findin
     """Compare nothing with a device that is wrong by itself, until the piece ends: no other may pay for it."""
     time = piece.grid.time
     for one in found:
-        if one.kind not in ("spike", "missing", "frozen"):
+        if one.lasting:
             mine = [any(device == one.device for (device, _), _ in test.relation.blame) for test in piece.tests]
             score[np.ix_(time > one.start_s, mine)] = np.nan
 

@@ -28,6 +28,9 @@ AIR_SCALE = (0.7, 1.4)
 STEER_ZERO_RAD = np.radians(1.5)
 
 
+LASTING = ("length of gravity at rest", "length of gravity over 2 s", "rate at rest")
+
+
 @dataclass(frozen=True)
 class Finding:
     """One device is wrong from `start_s` to `end_s`; `value` beyond `limit`, as `test` says."""
@@ -39,6 +42,7 @@ class Finding:
     value: float
     limit: float
     kind: str = "unknown"
+    lasting: bool = False  # nothing is compared with the device from then on
 
 
 def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
@@ -116,7 +120,8 @@ def _worst(
     """One finding for each run of values beyond a limit."""
     for first, last in _runs(time, np.abs(value) > limit, join_s):
         peak = value[first : last + 1][np.argmax(np.abs(value[first : last + 1]))]
-        yield Finding(device, float(time[first]) - half_s, float(time[last]) + half_s, test, float(peak), limit)
+        start_s, end_s = float(time[first]) - half_s, float(time[last]) + half_s
+        yield Finding(device, start_s, end_s, test, float(peak), limit, lasting=test in LASTING)
 
 
 def _gravity(grid: Grid, acc: Signal, vehicle: str) -> Iterator[Finding]:
@@ -313,6 +318,7 @@ def _airspeed(grid: Grid) -> Iterator[Finding]:
             ratio,
             AIR_SCALE[0] if ratio < 1 else AIR_SCALE[1],
             "scale",
+            lasting=True,
         )
 
 

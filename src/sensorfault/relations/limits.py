@@ -17,7 +17,7 @@ TENTH = 10.0  # a limit is this many scales
 # Constant differences of rates that are usual for such sensors, by the part of a relation: a calibration, no fault.
 USUAL_RATE = {"gyro": 0.02, "side": 0.1, "acc": 0.6, "accelerometer": 0.6, "wheel": 1.5, "climb": 0.3, "reckoned": 0.3}
 RATE_WINDOWS_S = (4.0, 15.0)
-SPARE, MOST_FACTOR, LEAST = 1.3, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
+SPARE, MOST_FACTOR, LEAST = 1.6, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
 BLOCK_S, BLOCKS = 20.0, 5  # blocks of 20 s, or a fifth of the piece
 NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
 CLASSES = ("copter", "wing", "car", "underwater")

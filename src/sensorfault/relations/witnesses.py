@@ -13,7 +13,8 @@ from sensorfault.relations.grid import GRAVITY, Grid, angle_rates, integrated, t
 Witness = Callable[[Grid], "Float[np.ndarray, ' T'] | None"]
 FAST_S = 0.06  # an accelerometer sampled more slowly folds vibration into motion
 SLOW_FAST_S = 0.21  # allowed where the vehicle does not vibrate
-COMPASS_LEAN_RAD = 0.6  # leaning further, what is left of iron and levelling moves a compass
+# Leaning further or rocking faster, what is left of iron and of levelling moves a compass.
+COMPASS_LEAN_RAD, COMPASS_ROCK_RAD_S = 0.6, 0.7
 MOVING_M_S = 3.0  # slower than this a course is noise
 
 
@@ -97,12 +98,15 @@ def compass(number: str = "") -> Witness:
 
     def witness(grid: Grid) -> Float[np.ndarray, " T"] | None:
         key = "magnetometer" + number
-        if key not in grid or "attitude" not in grid or not np.ptp(grid.signals[key].value, axis=0).any():
+        if key not in grid or "attitude" not in grid or not grid.facts.get("mounted", 1.0):
+            return None
+        if not np.ptp(grid.signals[key].value, axis=0).any():
             return None
         (x, y, z), lean = grid.value(key).T, grid.value("attitude")
         sr, cr, sp, cp = np.sin(lean[:, 0]), np.cos(lean[:, 0]), np.sin(lean[:, 1]), np.cos(lean[:, 1])
         forward, right = x * cp + y * sr * sp + z * cr * sp, y * cr - z * sr
-        upright = np.maximum(np.abs(lean[:, 0]), np.abs(lean[:, 1])) < COMPASS_LEAN_RAD
+        rocking = np.abs(np.gradient(lean[:, :2], grid.time, axis=0)).max(axis=1)
+        upright = (np.abs(lean[:, :2]).max(axis=1) < COMPASS_LEAN_RAD) & (rocking < COMPASS_ROCK_RAD_S)
         return unwrapped(np.where(upright, np.arctan2(-right, forward), np.nan))
 
     return witness
