@@ -55,9 +55,12 @@ def comparison_of(choice: Choice) -> "Comparison | None":
 def model_or_fit(choice: Choice) -> "Model | Fit":
     """The stored model, or what fits one on a log."""
     if choice.path is not None:
+        from sensorfault.runtime.compared import Comparison
         from sensorfault.runtime.store import load
 
-        return load(choice.path)
+        model = load(choice.path)
+        assert not isinstance(model, Comparison)  # comparison_of takes those
+        return model
 
     def fitted(log: "Log") -> "Model":
         from sensorfault.methods.fit import fit

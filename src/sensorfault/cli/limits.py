@@ -36,6 +36,10 @@ def of_coverage(detection: "Detection") -> tuple[str, ...]:
     for name, reason in coverage.not_compared.items():
         by_reason.setdefault(reason, []).append(name)
     said += [f"Not compared: {_some(names)} ({reason})." for reason, names in by_reason.items()]
+    if coverage.alone:
+        said.append(
+            f"Checked alone, for spikes, repeats, silence and impossible values: {_some(list(coverage.alone))}."
+        )
     return (*said, *coverage.sentences)
 
 
@@ -45,7 +49,7 @@ def of_comparison(comparison: "Comparison") -> tuple[str, ...]:
     assert learned is not None
     count = len({key.rpartition(" over ")[0] for key in learned.limit})
     return (
-        f"Fitted {count} comparisons of the sensors of a {summary['vehicle'] or 'vehicle'} on {clock(summary['training_s'])}.",
+        f"Fitted {count} comparisons of sensors of a {summary['vehicle']} on {clock(summary['training_s'])}.",
         "One log promises no false-alarm rate; its limits are the largest differences seen, with a margin.",
     )
 

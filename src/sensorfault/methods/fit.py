@@ -20,7 +20,7 @@ HELD_OUT = 0.3
 
 
 @overload
-def fit(
+def fit(  # type: ignore[overload-overlap]
     log: Log,
     method: Literal["auto"] = "auto",
     held_out: float = HELD_OUT,

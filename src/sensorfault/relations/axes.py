@@ -24,7 +24,8 @@ class Mounting:
     """The axes of one inertial unit.
 
     `turn`: rotation to forward, right, down; None if undecided. `gravity`: -1 where the accelerometer has the sign of
-    gravity. `forward`, `yaw`: whether the forward axis and the sign of turns are known, not only the vertical axis. `why`: what was lacking.
+    gravity. `forward`, `yaw`: whether the forward axis and the sign of turns are known, not only the vertical axis.
+    `why`: what was lacking.
     """
 
     turn: Float[np.ndarray, "3 3"] | None

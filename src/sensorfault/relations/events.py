@@ -1,4 +1,4 @@
-"""Events from episodes and findings: one for each device and time; who is unknown takes the name that is known later."""
+"""Events from episodes and findings: one for each device and time; an unknown one takes a name known later."""
 
 from dataclasses import dataclass, replace
 
@@ -36,7 +36,7 @@ def events_of(judged: Judged, last_s: float) -> tuple[Event, ...]:
         _Item(one.device, one.start_s, one.end_s, one.kind, one.test, abs(one.value), one.limit)
         for one in judged.findings
     ]
-    unknown = []
+    unknown: list[_Item] = []
     for one in judged.episodes:
         candidates = tuple(name for name, _ in one.candidates[:MOST_CANDIDATES])
         item = _Item(

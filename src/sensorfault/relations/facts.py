@@ -18,17 +18,14 @@ def learned(grid: Grid) -> dict[str, float]:
 
 
 def _steering(grid: Grid) -> dict[str, float]:
-    """yaw rate = gain * speed * (angle - zero), by the gyro or by the course: whichever fits better, as one may be wrong."""
+    """yaw rate = gain * speed * (angle - zero), by gyro or by course: whichever fits better, as one may be wrong."""
     speed = next((key for key in ("wheel", "gnss.speed") if key in grid), None)
     if "steering" not in grid or speed is None:
         return {}
     angle, v = grid.value("steering")[:, 0], grid.value(speed)[:, 0]
-    fits = [
-        _fit(angle, v, np.gradient(yaw, grid.time))
-        for yaw in (turned(2)(grid), course("gnss")(grid))
-        if yaw is not None
-    ]
-    fits = [fit for fit in fits if fit is not None]
+    yaws = turned(2)(grid), course("gnss")(grid)
+    found = (_fit(angle, v, np.gradient(yaw, grid.time)) for yaw in yaws if yaw is not None)
+    fits = [fit for fit in found if fit is not None]
     if not fits:
         return {}
     _, gain, zero = min(fits)

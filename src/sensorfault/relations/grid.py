@@ -1,12 +1,15 @@
 """Signals on a common grid of 5 Hz: values, integrals and vectors turned into the local frame; NaN across holes."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.relations.signals import Signal
 
+Kept = TypeVar("Kept", bound="Float[np.ndarray, 'T k'] | None")
 STEP_S = 0.2  # of the grid
 PAUSE_S = 1.0  # nothing at all was recorded for longer: the recorder paused
 STALE_S, STALE_PERIODS = 1.5, 3.1  # a longer gap between two measurements is a hole: no window may span it
@@ -34,7 +37,7 @@ class Grid:
     start_s: float
     end_s: float
     facts: dict[str, float] = field(default_factory=dict)
-    _kept: dict[str, Float[np.ndarray, "T k"] | None] = field(default_factory=dict)
+    _kept: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.time: Float[np.ndarray, " T"] = np.arange(self.start_s + STEP_S, self.end_s, STEP_S)
@@ -48,28 +51,30 @@ class Grid:
         stale = max(STALE_S, STALE_PERIODS * signal.period_s)
         after = np.clip(np.searchsorted(signal.time, self.time), 1, len(signal.time) - 1)
         gap = signal.time[after] - signal.time[after - 1]
-        return (gap > stale) | (self.time < signal.time[0]) | (self.time > signal.time[-1])
+        return np.asarray((gap > stale) | (self.time < signal.time[0]) | (self.time > signal.time[-1]))
 
     def put(self, key: str, value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "T k"]:
         """Numbers at the times of a signal, drawn between measurements onto the ticks."""
-        on = np.stack([np.interp(self.time, self.signals[key].time, column) for column in value.T], axis=1)
+        on: Float[np.ndarray, "T k"] = np.stack(
+            [np.interp(self.time, self.signals[key].time, column) for column in value.T], axis=1
+        )
         on[self.hole(key)] = np.nan
         return on
 
     def value(self, key: str) -> Float[np.ndarray, "T k"]:
         """The signal."""
-        return self._keep("v " + key, lambda: self.put(key, self.signals[key].value))
+        return self.keep("v " + key, lambda: self.put(key, self.signals[key].value))
 
     def integral(self, key: str) -> Float[np.ndarray, "T k"]:
         """Its integral since the piece began."""
-        return self._keep(
-            "i " + key, lambda: self.put(key, integrated(self.signals[key].time, self.signals[key].value))
-        )
+        return self.keep("i " + key, lambda: self.put(key, integrated(self.signals[key].time, self.signals[key].value)))
 
-    def _keep(self, name: str, make):  # type: ignore[no-untyped-def]
+    def keep(self, name: str, make: Callable[[], Kept]) -> Kept:
+        """What `make` returns, made once."""
         if name not in self._kept:
             self._kept[name] = make()
-        return self._kept[name]
+        kept: Kept = self._kept[name]
+        return kept
 
 
 def integrated(time: Float[np.ndarray, " n"], value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "n k"]:

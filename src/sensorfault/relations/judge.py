@@ -9,7 +9,7 @@ from sensorfault.logs.table import Log
 from sensorfault.relations import axes, facts, levels, limits
 from sensorfault.relations.grid import Grid, pieces_of
 from sensorfault.relations.isolation import Isolation, Named
-from sensorfault.relations.levels import Finding
+from sensorfault.relations.levels.finding import Finding, runs
 from sensorfault.relations.signals import Signal, signals_of
 from sensorfault.relations.tests_of import Piece, judged
 from sensorfault.relations.vehicle_class import class_of
@@ -24,7 +24,7 @@ IMPACT = 100.0  # [m/s^2]: judging ends
 
 @dataclass(frozen=True)
 class Episode:
-    """Something is wrong from start to end. `device`: who, or None; `candidates`: devices with their shares of blame."""
+    """Something is wrong from start to end. `device`: who, or None; `candidates`: devices with their costs."""
 
     start_s: float
     end_s: float
@@ -134,7 +134,7 @@ def _leave_out(piece: Piece, score: Float[np.ndarray, "T K"], found: list[Findin
     for one in found:
         if one.lasting:
             mine = [any(device == one.device for (device, _), _ in test.relation.blame) for test in piece.tests]
-            score[np.ix_(time > one.start_s, mine)] = np.nan
+            score[np.ix_(time > one.start_s, np.array(mine, bool))] = np.nan
 
 
 def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, " K"]) -> list[Episode]:
@@ -147,7 +147,7 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
     lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~over
     episodes = []
     for device, alarm in ((None, over), ("attitude", lone)):
-        for first, last in levels._runs(piece.grid.time, alarm, JOIN_S):
+        for first, last in runs(piece.grid.time, alarm, JOIN_S):
             ticks = first + np.flatnonzero(alarm[first : last + 1])
             if len(ticks) < LEAST_TICKS:
                 continue

@@ -17,7 +17,7 @@ def shifted(x: Float[np.ndarray, " T"], lag_s: float) -> Float[np.ndarray, " T"]
     if lag_s == 0 or there.sum() < 2:
         return x
     tick = np.arange(len(x)) * STEP_S
-    out = np.interp(tick - lag_s, tick[there], x[there])
+    out: Float[np.ndarray, " T"] = np.interp(tick - lag_s, tick[there], x[there])
     out[~there] = np.nan
     return out
 

@@ -165,5 +165,5 @@ def _convention(role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k
         # international standard atmosphere: h = 44330 (1 - (p / p0)^0.1903), p0 the first pressure
         return np.asarray(44_330.0 * (1 - np.maximum(value / np.median(value[:5]), 1e-3) ** 0.190263))
     if role == "wheel" and value.shape[1] > 1:
-        return value.mean(axis=1, keepdims=True)
+        return np.asarray(value.mean(axis=1, keepdims=True))
     return value

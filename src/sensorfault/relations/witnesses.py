@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.relations.grid import GRAVITY, Grid, angle_rates, integrated, to_local, unwrapped
+from sensorfault.relations.signals import Signal
 
 Witness = Callable[[Grid], "Float[np.ndarray, ' T'] | None"]
 FAST_S = 0.06  # an accelerometer sampled more slowly folds vibration into motion
@@ -38,12 +39,12 @@ def pulled(column: int, order: int, number: str = "") -> Witness:
         acc, attitude = grid.signals[key], grid.signals["attitude"]
         if acc.period_s > grid.facts.get("acceleration.period", FAST_S):
             return None
-        return grid._keep(f"pulled {number} {order}", lambda: _pulled(grid, key, acc, attitude, order))[:, column]
+        return grid.keep(f"pulled {number} {order}", lambda: _pulled(grid, key, acc, attitude, order))[:, column]
 
     return witness
 
 
-def _pulled(grid, key, acc, attitude, order):  # type: ignore[no-untyped-def]
+def _pulled(grid: Grid, key: str, acc: Signal, attitude: Signal, order: int) -> Float[np.ndarray, "T 3"]:
     roll, pitch = (np.interp(acc.time, attitude.time, attitude.value[:, i]) for i in (0, 1))
     yaw = np.interp(acc.time, attitude.time, np.unwrap(attitude.value[:, 2]))
     local = to_local(np.stack([roll, pitch, yaw], axis=1), acc.value)
@@ -63,12 +64,12 @@ def turned(column: int, number: str = "") -> Witness:
         key = "gyro" + number
         if key not in grid:
             return _yaw_rate(grid) if column == 2 and not number else None
-        return grid._keep(f"turned {number}", lambda: _turned(grid, key))[:, column]
+        return grid.keep(f"turned {number}", lambda: _turned(grid, key))[:, column]
 
     return witness
 
 
-def _turned(grid, key):  # type: ignore[no-untyped-def]
+def _turned(grid: Grid, key: str) -> Float[np.ndarray, "T 3"]:
     gyro = grid.signals[key]
     lean = np.zeros((2, len(gyro.time)))
     if "attitude" in grid:
@@ -171,7 +172,7 @@ def velocity(column: int, device: str) -> Witness:
     """North or east velocity: measured, or from speed and course."""
 
     def witness(grid: Grid) -> Float[np.ndarray, " T"] | None:
-        both = grid._keep(f"velocity {device}", lambda: _velocity(grid, False, device))
+        both = grid.keep(f"velocity {device}", lambda: _velocity(grid, False, device))
         return None if both is None else both[:, column]
 
     return witness
@@ -181,7 +182,7 @@ def displaced(column: int, device: str) -> Witness:
     """Integral of the receiver's velocity: measured, or from its speed and course."""
 
     def witness(grid: Grid) -> Float[np.ndarray, " T"] | None:
-        both = grid._keep(f"displaced {device}", lambda: _velocity(grid, True, device))
+        both = grid.keep(f"displaced {device}", lambda: _velocity(grid, True, device))
         return None if both is None else both[:, column]
 
     return witness
@@ -202,7 +203,7 @@ def reckoned(column: int) -> Witness:
     """Way by wheels or a Doppler log, turned by heading: dead reckoning, north or east."""
 
     def witness(grid: Grid) -> Float[np.ndarray, " T"] | None:
-        way = grid._keep("reckoned", lambda: _reckoned(grid))
+        way = grid.keep("reckoned", lambda: _reckoned(grid))
         return None if way is None else way[:, column]
 
     return witness
@@ -230,7 +231,7 @@ def _speed(grid: Grid) -> "tuple[Float[np.ndarray, ' n'], Float[np.ndarray, ' n'
 
 
 def steered(grid: Grid) -> Float[np.ndarray, " T"] | None:
-    """Yaw by the steering: integral of speed times angle times a gain, which is fitted (one over ratio and wheelbase)."""
+    """Yaw by the steering: integral of speed times angle times a fitted gain, one over ratio times wheelbase."""
     speed = _speed(grid)
     if "steering" not in grid or speed is None or "steering.gain" not in grid.facts:
         return None

@@ -11,10 +11,12 @@ from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import Log, LogError
 from sensorfault.relations.events import METHOD, events_of, sensor_of
-from sensorfault.relations.judge import Judged, fitted, judge
+from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
 from sensorfault.runtime.result import Detection, Trace
 
+NO_LEVELS = frozenset({"attitude", "gnss.course"})
+REASONS_SHOWN = 3
 OVERLAP_S = 70.0  # a part is judged with the end of the part before it, so that the longest window spans the seam
 
 
@@ -36,11 +38,14 @@ class Comparison:
 class Coverage:
     """Which sensors were compared with which others, and which were not and why.
 
+    `alone`: those of the latter that were still checked for spikes, exact repeats, silence and impossible values.
+
     `sentences`: what else to know of the answer: where the limits come from, what is usual for this vehicle.
     """
 
     compared: dict[str, tuple[str, ...]]
     not_compared: dict[str, str]
+    alone: tuple[str, ...] = ()
     sentences: tuple[str, ...] = ()
 
 
@@ -136,6 +141,9 @@ def _joined(first: Log, second: Log) -> Log:
 def _detection(log: Log, judged: Judged) -> Detection:
     sensors = [sensor.name for sensor in log.sensors]
     coverage = _coverage(log, judged)
+    if not coverage.compared and not coverage.alone:
+        reasons = "; ".join(f"{name}: {reason}" for name, reason in list(coverage.not_compared.items())[:REASONS_SHOWN])
+        raise LogError(f"{log.name}: none of its sensors can be checked ({reasons}); give a longer log, or --method.")
     tested = _tested(log, judged, sensors)
     events = events_of(judged, float(log.time[-1]))
     sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
@@ -169,10 +177,9 @@ def _coverage(log: Log, judged: Judged) -> Coverage:
             devices = dict.fromkeys(sensor_of(device, judged.signals) for (device, _), _ in test.relation.blame)
             for one in devices:
                 partners.setdefault(one, {}).update(dict.fromkeys(other for other in devices if other != one))
-    for signal in judged.signals.values():
-        partners.setdefault(signal.sensor, {}) if signal.sensor in partners else None
     compared = {name: tuple(others) or (name,) for name, others in partners.items()}
     roles = {signal.sensor for signal in judged.signals.values()}
+    checked = {s.sensor for s in judged.signals.values() if s.role not in NO_LEVELS} if judged.pieces else set()
     why = next((m.why for m in judged.mountings.values() if m.turn is None), "")
     reasons = {}
     for sensor in log.sensors:
@@ -181,10 +188,10 @@ def _coverage(log: Log, judged: Judged) -> Coverage:
         if sensor.name not in roles:
             reasons[sensor.name] = "no relation to other sensors is known"
         elif not judged.pieces:
-            reasons[sensor.name] = "the log is too short"
+            reasons[sensor.name] = f"too short to judge, less than {SHORTEST_S:g} s without a pause"
         else:
             reasons[sensor.name] = why or "no other sensor measures the same"
-    return Coverage(compared, reasons)
+    return Coverage(compared, reasons, tuple(name for name in reasons if name in checked))
 
 
 def _tested(log: Log, judged: Judged, sensors: list[str]) -> Int8[np.ndarray, "T S"]:
