@@ -1,5 +1,6 @@
 """Detect the faults of a log, with progress."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,7 +9,7 @@ from sensorfault.cli import fitting, limits, reading, show
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
-    from sensorfault.runtime.compared import Comparison
+    from sensorfault.runtime.compared import Comparison, NothingToCompare
     from sensorfault.runtime.detector import See
     from sensorfault.runtime.model import Model
     from sensorfault.runtime.result import Detection
@@ -32,10 +33,49 @@ def detect_log(
     `by_parts`: see `reading.in_parts`. `see` gets each part that was judged, as in `detect_file`.
     """
     parts = reading.in_parts(path, by_parts)
-    read = partial(reading.read_in, parts, path, vehicle)
+    read = partial(reading.read_in, parts, path, fitting.description_of(choice, path, vehicle))
     comparison = fitting.comparison_of(choice)
     if comparison is not None:
-        return _compared(read, comparison, see)
+        from sensorfault.runtime.compared import NothingToCompare
+
+        try:
+            return _compared(read, comparison, see)
+        except NothingToCompare as nothing:
+            return _inertial(nothing, path, vehicle, by_parts, choice, see)
+    return _fitted(read, parts, choice, see)
+
+
+def _inertial(
+    nothing: "NothingToCompare",
+    path: Path,
+    vehicle: Path | None,
+    by_parts: bool | None,
+    choice: fitting.Choice,
+    see: "See | None",
+) -> "Detection":
+    """A log without two sensors that measure the same: an inertial unit is still judged by itself.
+
+    Raises:
+        LogError: nothing of the log can be judged.
+    """
+    from sensorfault.logs import LogError
+
+    if choice.path is not None:
+        raise nothing
+    parts = reading.in_parts(path, by_parts)
+    quiet = partial(reading.read_in, parts, path, vehicle, quiet=True)
+    try:
+        found = _fitted(quiet, parts, replace(choice, method=fitting.INERTIAL), see)
+    except LogError:
+        if nothing.alone is None:
+            raise nothing from None
+        return nothing.alone
+    show.say(f"No two of its sensors measure the same: its channels are judged by {fitting.INERTIAL}, each by itself.")
+    return found
+
+
+def _fitted(read: "Parts", parts: bool, choice: fitting.Choice, see: "See | None") -> "Detection":
+    """By a stored model, or by a method that is fitted on the beginning of the log."""
     from sensorfault.runtime.streaming import detect_parts
 
     with show.patient("judging") as judged:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import limits, options, outputs, reading, show
+from sensorfault.cli import fitting, limits, options, outputs, reading, show
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
@@ -53,8 +53,10 @@ def command(
     if until_s is not None:
         table = table.between(end_s=until_s)
     if method == METHOD:
-        _compare(table, out, json_path)
-        return
+        if _compare(table, out, json_path):
+            return
+        method = fitting.INERTIAL
+        show.say(f"No two of its sensors measure the same: {method} is fitted, which judges each channel by itself.")
     from sensorfault.methods.fit import fit
     from sensorfault.runtime.store import save
 
@@ -72,15 +74,19 @@ def command(
     show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})
 
 
-def _compare(log: "Log", out: Path | None, json_path: str | None) -> None:
-    """Fit the default method: what the sensors of a healthy log say of each other."""
-    from sensorfault.runtime.compared import comparison_of
+def _compare(log: "Log", out: Path | None, json_path: str | None) -> bool:
+    """Fit the default method: what the sensors of a healthy log say of each other. False if no two say the same."""
+    from sensorfault.runtime.compared import NothingToCompare, comparison_of
     from sensorfault.runtime.saved import write_comparison
 
-    comparison = comparison_of(log)
+    try:
+        comparison = comparison_of(log)
+    except NothingToCompare:
+        return False
     target = out or Path(f"{log.name}.sensorfault")
     write_comparison(comparison, target)
     for sentence in limits.of_comparison(comparison):
         show.say(sentence)
     show.say(f"Wrote {target}.")
     show.write_json(json_path, {"model": str(target), "method": comparison.method, **comparison.summary})
+    return True

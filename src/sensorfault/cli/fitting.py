@@ -8,9 +8,13 @@ from sensorfault.cli import limits, show
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
+    from sensorfault.logs.vehicle import VehicleFile
     from sensorfault.runtime.compared import Comparison
     from sensorfault.runtime.model import Model
     from sensorfault.runtime.streaming import Fit
+
+
+INERTIAL = "relative-conditioning"  # for logs in which no two sensors measure the same
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,34 @@ class Choice:
 
         if not 0.05 <= self.learn <= 0.95:  # click accepts NaN as a number
             raise LogError(f"--learn is {self.learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
+
+
+def description_of(choice: Choice, log: Path, vehicle: Path | None) -> "VehicleFile | Path | None":
+    """What the columns of a log are: as the user says, else as the model was fitted, else None.
+
+    Raises:
+        LogError: the model and a vehicle.toml disagree.
+    """
+    from sensorfault.logs.place import find_vehicle
+    from sensorfault.logs.vehicle import VehicleFile
+    from sensorfault.runtime.saved import header_of
+
+    text = header_of(choice.path).get("summary", {}).get("description") if choice.path is not None else None
+    if not isinstance(text, str):
+        return vehicle
+    known = VehicleFile.parse(text, f"{choice.path}")
+    if len({entry.path for entry in known.files}) > 1:
+        return vehicle  # files of other names cannot be matched
+    beside = find_vehicle(log, vehicle)
+    if beside is None:
+        return known
+    if conflict := beside.conflict(known):
+        from sensorfault.logs import LogError
+
+        raise LogError(
+            f"{vehicle or f'the vehicle.toml beside {log}'} and the model {choice.path} disagree: {conflict}."
+        )
+    return beside
 
 
 def comparison_of(choice: Choice) -> "Comparison | None":

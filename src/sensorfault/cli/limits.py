@@ -37,9 +37,7 @@ def of_coverage(detection: "Detection") -> tuple[str, ...]:
         by_reason.setdefault(reason, []).append(name)
     said += [f"Not compared: {_some(names)} ({reason})." for reason, names in by_reason.items()]
     if coverage.alone:
-        said.append(
-            f"Checked alone, for spikes, repeats, silence and impossible values: {_some(list(coverage.alone))}."
-        )
+        said.append(f"Checked alone, for spikes, repeats, silence and absurd values: {_some(list(coverage.alone))}.")
     return (*said, *coverage.sentences)
 
 

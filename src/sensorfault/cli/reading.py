@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from sensorfault.faults.fault import Fault
     from sensorfault.logs import Log
     from sensorfault.logs.reading_notes import ReadingNotes
+    from sensorfault.logs.vehicle import VehicleFile
 
 
 def in_parts(path: Path, wanted: bool | None) -> bool:
@@ -22,8 +23,8 @@ def in_parts(path: Path, wanted: bool | None) -> bool:
     return is_long_log(path) if wanted is None else wanted
 
 
-def read_log(path: Path, vehicle: Path | None) -> "Log":
-    """Read a log whole.
+def read_log(path: Path, vehicle: "Path | VehicleFile | None", quiet: bool = False) -> "Log":
+    """Read a log whole. `quiet`: what reading found was printed before.
 
     Raises:
         LogError: as `read`, or the log is larger than this machine's memory.
@@ -33,16 +34,18 @@ def read_log(path: Path, vehicle: Path | None) -> "Log":
     _check_memory(path)
     with show.patient(f"reading {path.name}") as tell:
         log = read(path, vehicle, tell=tell)
-    _print(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.", log.notes)
+    if not quiet:
+        _print(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.", log.notes)
     return log
 
 
 def read_in(
     parts: bool,
     path: Path,
-    vehicle: Path | None,
+    vehicle: "Path | VehicleFile | None",
     take: "Callable[[Log], None]",
     tell: Callable[[float], None] = lambda share: None,
+    quiet: bool = False,
 ) -> "ReadingNotes":
     """Read a log in parts, or else whole as one part. `take` gets each part, `tell` before it the share read so far.
 
@@ -53,7 +56,7 @@ def read_in(
     from sensorfault.logs.reading_notes import ReadingNotes
 
     if not parts:
-        log = read_log(path, vehicle)
+        log = read_log(path, vehicle, quiet)
         tell(1.0)
         take(log)
         return ReadingNotes(log.notes, log.damage)
@@ -72,7 +75,8 @@ def read_in(
             tell(share)
 
         said = read_parts(path, count, vehicle, both)
-    _print(f"{name}: {rows} rows to {clock(end_s)}, read part by part.", said.notes)
+    if not quiet:
+        _print(f"{name}: {rows} rows to {clock(end_s)}, read part by part.", said.notes)
     return said
 
 

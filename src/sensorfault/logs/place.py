@@ -41,7 +41,8 @@ def files_of(path: Where) -> list[Path]:
 def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> VehicleFile | None:
     """The given vehicle file, or the one beside the log, or None.
 
-    Beside `drive.csv` that is `drive.vehicle.toml`, or a `vehicle.toml` which does not name another file.
+    Beside `drive.csv` that is `drive.vehicle.toml`, or a `vehicle.toml` of one file, whatever its name; of several
+    files, one that names them.
     """
     if isinstance(vehicle, VehicleFile):
         return vehicle
@@ -55,6 +56,8 @@ def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> Vehic
         return None
     found = VehicleFile.read(beside)
     if isinstance(path, str | Path) and Path(path).is_dir():
+        return found
+    if len(files) == 1 and len({entry.path for entry in found.files}) == 1:
         return found
     names = {file.name for file in files}
     return found if all(entry.path is None or Path(entry.path).name in names for entry in found.files) else None

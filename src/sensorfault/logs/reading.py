@@ -29,11 +29,25 @@ def read_files(
 ) -> Log:
     """What `read` says."""
     described = find_vehicle(path, vehicle)
-    known = called_after(described, path) if described else guess(path, tell)
-    notes = () if described else (GUESSED, *known.notes)
+    if described is not None and vehicle is None:
+        try:
+            return _read_as(described, path, (), resample, tell)
+        except LogError as error:
+            known = guess(path, tell)
+            notes = (f"The vehicle.toml beside it describes another log ({error}); it is not used.", *known.notes)
+            return _read_as(known, path, (GUESSED, *notes), resample, tell)
+    known = described or guess(path, tell)
+    return _read_as(known, path, () if described else (GUESSED, *known.notes), resample, tell)
+
+
+def _read_as(
+    known: VehicleFile, path: Where, notes: tuple[str, ...], resample: Resample, tell: Callable[[float], None]
+) -> Log:
+    """Read the files as they are described."""
+    known = called_after(known, path)
     used = {sensor.file for sensor in known.sensors}
     pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]
-    sources = _sources(pairs, described is None, tell)
+    sources = _sources(pairs, bool(notes), tell)
     streams = [
         read_stream(source, entry, tuple(sensor for sensor in known.sensors if sensor.file == entry.name))
         for (entry, _), source in zip(pairs, sources, strict=True)
@@ -98,4 +112,5 @@ def log_of(
         epoch_s=epoch,
         wheelbase_m=vehicle.wheelbase_m,
         steering_ratio=vehicle.steering_ratio,
+        description=vehicle,
     )

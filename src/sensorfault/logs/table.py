@@ -1,7 +1,7 @@
 """A log: the measurements of all sensors on one clock."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,8 @@ from sensorfault.logs.units import from_si
 
 if TYPE_CHECKING:
     import polars
+
+    from sensorfault.logs.vehicle import VehicleFile
 
 
 class LogError(ValueError):
@@ -62,6 +64,7 @@ class Log:
     `wheelbase_m` and `steering_ratio` are the vehicle's, if its file says them.
     `notes`: remarks from reading (clock faults, held rows, guesses), one sentence each.
     `block`: what a residual generator takes besides, arrays with an entry for each tick (see `epochs`).
+    `description`: what its columns were read as, by a vehicle.toml or a guess; None for a log that was made by hand.
     `damage`: those of them that say where a file could not be read, and what was read all the same.
     """
 
@@ -77,6 +80,7 @@ class Log:
     wheelbase_m: float | None = None
     steering_ratio: float | None = None
     block: Any = ()
+    description: "VehicleFile | None" = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         rows, width = self.value.shape

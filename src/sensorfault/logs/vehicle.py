@@ -83,6 +83,16 @@ class VehicleFile:
             raise LogError(f"{where}: this is not TOML ({error}); correct that line.") from None
         return _vehicle(TomlTable(table, where, ""), where)
 
+    def conflict(self, other: "VehicleFile") -> str:
+        """The first column that the two describe in another way, in words; empty if they agree."""
+        mine = {c.column: (s.name, c.name, c.unit) for s in self.sensors for c in s.channels}
+        for sensor in other.sensors:
+            for c in sensor.channels:
+                here, there = mine.get(c.column), (sensor.name, c.name, c.unit)
+                if here is not None and here != there:
+                    return f"column '{c.column}' is {_spoken(here)} in one and {_spoken(there)} in the other"
+        return ""
+
     def to_toml(self) -> str:
         """The TOML text, with the reason of each guess as a comment; it parses back to the same."""
         lines = [*(comment(note) for note in self.notes), "[vehicle]", f"name = {quote(self.name)}"]
@@ -97,6 +107,11 @@ class VehicleFile:
         for sensor in self.sensors:
             lines += ["", *sensor_lines(sensor, single=len(self.files) == 1)]
         return "\n".join(lines) + "\n"
+
+
+def _spoken(channel: tuple[str, str, str]) -> str:
+    sensor, name, unit = channel
+    return f"{sensor}.{name} [{unit}]" if unit else f"{sensor}.{name}"
 
 
 def _vehicle(top: TomlTable, where: str) -> VehicleFile:

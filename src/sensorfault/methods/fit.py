@@ -11,7 +11,7 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import recipe
 from sensorfault.numerics.poisson import rate_below
 from sensorfault.relations.events import METHOD as AUTO
-from sensorfault.runtime.compared import Comparison, comparison_of
+from sensorfault.runtime.compared import Comparison, comparison_of, described
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
@@ -88,7 +88,11 @@ def fit(
         raise LogError(f"held_out is {held_out:g}, which leaves fewer than two rows of {log.name}; give more, or 0.")
     training, suspects = leave_out(log.between(end_s=cut) if held_out else log)
     model = recipe(method).build(training, seed, session)
-    summary = model.summary | {"seed": seed, "training_suspects": [suspect.as_dict() for suspect in suspects]}
+    summary = (
+        model.summary
+        | described(log)
+        | {"seed": seed, "training_suspects": [suspect.as_dict() for suspect in suspects]}
+    )
     if held_out:
         session.progress("testing on the held-out part")
         alarms = len(detect(model, unseen).events)

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from sensorfault.logs.table import Channel, Log
 
@@ -132,8 +132,8 @@ def _roles(sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]) 
 def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tuple[int, ...]) -> None:
     mine = list(columns)
     new = log.fresh[:, mine].any(axis=1) & np.isfinite(log.value[:, mine]).all(axis=1)
-    if role == "gnss.position":
-        new &= (log.value[:, mine] != 0).any(axis=1)
+    if role.startswith("gnss."):
+        new &= _has_fix(log, sensor)
     if new.sum() < 5:
         return
     value = log.value[np.ix_(new, mine)]
@@ -148,6 +148,12 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
     if rest and same is not None:
         key = f"{same.partition('.')[0]}.{rest}"
     found.setdefault(key, Signal(key, role, sensor, columns, log.time[new], value))
+
+
+def _has_fix(log: Log, sensor: str) -> Bool[np.ndarray, " T"]:
+    """Rows in which the receiver is not at 0 degrees north and east, which means that it has no fix yet."""
+    place = [i for i in log.of(sensor) if log.channels[i].name in ("latitude", "longitude")]
+    return np.asarray((log.value[:, place] != 0).any(axis=1)) if place else np.ones(len(log), bool)
 
 
 def _convention(role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "n k"]:

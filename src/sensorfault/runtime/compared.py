@@ -20,6 +20,12 @@ REASONS_SHOWN = 3
 OVERLAP_S = 70.0  # a part is judged with the end of the part before it, so that the longest window spans the seam
 
 
+class NothingToCompare(LogError):
+    """No two sensors of a log say the same. `alone`: what checking each by itself found, if that was possible."""
+
+    alone: "Detection | None" = None
+
+
 @dataclass(frozen=True)
 class Comparison:
     """What the default knows of a vehicle; `learned` is None where no healthy log was given.
@@ -58,9 +64,18 @@ def comparison_of(*logs: Log) -> Comparison:
     learned = fitted(list(logs))
     names = ", ".join(log.name for log in logs)
     if not learned.limit:
-        raise LogError(f"{names}: no two of its sensors can be compared; 'sensorfault detect' on it says why.")
+        raise NothingToCompare(
+            f"{names}: no two of its sensors measure the same; fit a method for single sensors, as "
+            "relative-conditioning (--method)."
+        )
     seconds = sum(log.duration_s for log in logs)
-    return Comparison(learned, {"training_log": names, "training_s": seconds, "vehicle": learned.vehicle})
+    summary = {"training_log": names, "training_s": seconds, "vehicle": learned.vehicle, **described(logs[0])}
+    return Comparison(learned, summary)
+
+
+def described(log: Log) -> dict[str, str]:
+    """For the summary of a model: what the columns of its training log were read as."""
+    return {"description": log.description.to_toml()} if log.description is not None else {}
 
 
 def compare(log: Log, comparison: Comparison | None = None) -> Detection:
@@ -71,7 +86,19 @@ def compare(log: Log, comparison: Comparison | None = None) -> Detection:
     """
     if not len(log):
         raise LogError(f"{log.name} has no rows; give a log that has some.")
-    return _detection(log, judge(log, comparison.learned if comparison else None))
+    found = _detection(log, judge(log, comparison.learned if comparison else None))
+    assert found.coverage is not None
+    if not found.coverage.compared and not found.coverage.alone:
+        raise _nothing(log, found.coverage)
+    return found
+
+
+def _nothing(log: Log, coverage: Coverage) -> NothingToCompare:
+    listed = list(coverage.not_compared.items())[:REASONS_SHOWN]
+    reasons = "; ".join(f"{name}: {reason}" for name, reason in listed) or "it has none"
+    return NothingToCompare(
+        f"{log.name}: none of its sensors can be checked ({reasons}); give a longer log, or name a --method."
+    )
 
 
 class ComparingDetector:
@@ -92,6 +119,7 @@ class ComparingDetector:
         judged = judge(log, self._learned)
         self._learned = self._learned or judged.learned
         found = _detection(log, judged).between(float(part.time[0]))
+        self._check(log, found)
         self._add(found.events, float(part.time[0]))
         self._first = self._first or part.between(end_s=float(part.time[min(1, len(part) - 1)]))
         self._rows, self._parts = self._rows + len(part), self._parts + 1
@@ -102,7 +130,8 @@ class ComparingDetector:
 
     def found(self, said: ReadingNotes | None = None) -> Detection:
         """The result so far; with all rows if there was only one part."""
-        assert self._last is not None and self._first is not None
+        assert self._last is not None
+        assert self._first is not None
         found = self._last
         if said is not None:
             notes = tuple(dict.fromkeys((*said.notes, *found.log.notes)))
@@ -111,6 +140,18 @@ class ComparingDetector:
             return found
         last = found.log.between(float(found.log.time[-1]))
         return found.without_rows(_joined(self._first, last), self._rows)
+
+    def _check(self, log: Log, found: Detection) -> None:
+        """Whether anything was compared.
+
+        Raises:
+            NothingToCompare: in the first part nothing was.
+        """
+        assert found.coverage is not None
+        if self._parts == 0 and not found.coverage.compared:
+            nothing = _nothing(log, found.coverage)
+            nothing.alone = found if found.coverage.alone else None
+            raise nothing
 
     def _add(self, events: tuple[Event, ...], start_s: float) -> None:
         """Events of the next part; one that was ongoing at the seam goes on."""
@@ -141,9 +182,6 @@ def _joined(first: Log, second: Log) -> Log:
 def _detection(log: Log, judged: Judged) -> Detection:
     sensors = [sensor.name for sensor in log.sensors]
     coverage = _coverage(log, judged)
-    if not coverage.compared and not coverage.alone:
-        reasons = "; ".join(f"{name}: {reason}" for name, reason in list(coverage.not_compared.items())[:REASONS_SHOWN])
-        raise LogError(f"{log.name}: none of its sensors can be checked ({reasons}); give a longer log, or --method.")
     tested = _tested(log, judged, sensors)
     events = events_of(judged, float(log.time[-1]))
     sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
