@@ -8,10 +8,10 @@ from typing import Literal, overload
 from sensorfault.calibration.data_screening import leave_out
 from sensorfault.core.expect import LOG, expect
 from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.catalog import recipe
+from sensorfault.methods.catalog import DEFAULT, recipe
 from sensorfault.numerics.poisson import rate_below
 from sensorfault.relations.events import METHOD as AUTO
-from sensorfault.runtime.compared import Comparison, comparison_of, described
+from sensorfault.runtime.compared import Comparison, NothingToCompare, comparison_of, described
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
@@ -27,7 +27,7 @@ def fit(  # type: ignore[overload-overlap]
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
     checkpoint: Path | None = None,
-) -> Comparison: ...
+) -> Model | Comparison: ...
 
 
 @overload
@@ -62,7 +62,8 @@ def fit(
 
     Args:
         log: T rows, C channels in SI on one clock, taken as healthy.
-        method: "auto", which compares the sensors with each other and uses the whole log, or a name of `METHODS`.
+        method: "auto", which compares the sensors with each other and uses the whole log (where no two measure the
+            same, it is relative-conditioning); or a name of `METHODS`.
         held_out: share of the log.
         seed: of all chance in the fit; the same seed gives the same model.
         progress: called with a sentence.
@@ -79,7 +80,10 @@ def fit(
     if len(log) < 2:
         raise LogError(f"{log.name} has {len(log)} rows; give a log of at least a few seconds.")
     if method == AUTO:
-        return comparison_of(log)
+        try:
+            return comparison_of(log)
+        except NothingToCompare:
+            method = DEFAULT
     session = Session(progress, checkpoint) if progress else Session(checkpoint=checkpoint)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s
     session.progress(f"fitting {method}")

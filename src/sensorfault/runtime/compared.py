@@ -4,15 +4,16 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int8
+from jaxtyping import Bool, Float
 
 from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
-from sensorfault.logs.table import Log, LogError
+from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.relations.events import METHOD, events_of, sensor_of
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
+from sensorfault.runtime import show
 from sensorfault.runtime.result import Detection, Trace
 
 NO_LEVELS = frozenset({"attitude", "gnss.course"})
@@ -33,11 +34,22 @@ class Comparison:
     Args:
         learned: usual changes, limits, lags and facts from healthy logs.
         summary: how it was fitted; for people.
+        channels, sensors: of the log it was fitted on, as a live sample has them.
     """
 
     learned: Learned | None = None
     summary: dict[str, Any] = field(default_factory=dict)
+    channels: tuple[Channel, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
     method: str = METHOD
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Paths of the channels, in the order of a live sample."""
+        return tuple(channel.path for channel in self.channels)
+
+    def __repr__(self) -> str:
+        return f"<Comparison {show.comparison_line(self.sensors, self.summary)}>"
 
 
 @dataclass(frozen=True)
@@ -70,7 +82,7 @@ def comparison_of(*logs: Log) -> Comparison:
         )
     seconds = sum(log.duration_s for log in logs)
     summary = {"training_log": names, "training_s": seconds, "vehicle": learned.vehicle, **described(logs[0])}
-    return Comparison(learned, summary)
+    return Comparison(learned, summary, logs[0].channels, logs[0].sensors)
 
 
 def described(log: Log) -> dict[str, str]:
@@ -182,7 +194,7 @@ def _joined(first: Log, second: Log) -> Log:
 def _detection(log: Log, judged: Judged) -> Detection:
     sensors = [sensor.name for sensor in log.sensors]
     coverage = _coverage(log, judged)
-    tested = _tested(log, judged, sensors)
+    tested = tested_sensors(log, judged, sensors)
     events = events_of(judged, float(log.time[-1]))
     sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
     sample = np.where(tested.any(axis=1), OK, UNKNOWN).astype(np.int8)
@@ -232,7 +244,7 @@ def _coverage(log: Log, judged: Judged) -> Coverage:
     return Coverage(compared, reasons, tuple(name for name in reasons if name in checked))
 
 
-def _tested(log: Log, judged: Judged, sensors: list[str]) -> Int8[np.ndarray, "T S"]:
+def tested_sensors(log: Log, judged: Judged, sensors: list[str]) -> Bool[np.ndarray, "T S"]:
     """Rows at which some comparison of a sensor had something to compare."""
     tested = np.zeros((len(log), len(sensors)), bool)
     for piece, score in zip(judged.pieces, judged.scores, strict=True):

@@ -7,12 +7,13 @@ from jaxtyping import Bool, Float
 
 from sensorfault.core.expect import LOG, MODEL, expect, wrong
 from sensorfault.core.times import clock
-from sensorfault.core.verdicts import FAULT
+from sensorfault.core.verdicts import FAULT, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.logs.epochs import Gather
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.table import Log
 from sensorfault.runtime.compared import Comparison, compare
+from sensorfault.runtime.comparing_live import ComparingLive
 from sensorfault.runtime.detector import Detector
 from sensorfault.runtime.extractor import context_of
 from sensorfault.runtime.model import Model
@@ -61,29 +62,41 @@ class Live:
     >>> now = live.push(0.02, [0.01, 0.0, 0.12, 0.3, -0.1, 9.8])
     >>> now.sample  # 0 ok, 1 unknown, 2 fault
 
-    `events` are those that have ended; `open()` returns those that are ongoing.
+    `events` are those that have ended; `open()` returns those that are ongoing. A model of the default method compares
+    the sensors once a second; between two comparisons its verdicts stand, and scores and residuals are empty.
 
     Raises:
         TypeError: something else than a model.
+        ValueError: a comparison that was not fitted.
     """
 
-    def __init__(self, model: Model) -> None:
-        expect(model, Model, "Live: model", MODEL)
+    def __init__(self, model: Model | Comparison) -> None:
+        expect(model, (Model, Comparison), "Live: model", MODEL)
         self._model = model
         self.events: list[Event] = []
-        framing = model.framing
-        self._gather = Gather(framing) if framing else None
-        self._step = Stepper(model.monitor, framing.nothing if framing else ())
-        self._watch = context_of(model)
-        self._tracker = Tracker(self._watch)
         held = {sensor.name: sensor.held for sensor in model.sensors}
         names = [channel.sensor for channel in model.channels]
         self._held = [np.flatnonzero([n == name for n in names]) for name in held if held[name]]
         self._fresh: Bool[np.ndarray, " C"] = np.ones(len(model.inputs), bool)
         self._last: Float[np.ndarray, " C"] = np.full(len(model.inputs), np.nan)
+        self._time: float | None = None
+        self._comparing: ComparingLive | None = None
+        if isinstance(model, Comparison):
+            if model.learned is None:
+                raise ValueError("live: this comparison was not fitted; fit one on a healthy log with sf.fit(log).")
+            self._comparing = ComparingLive(model)
+        else:
+            self._prepare(model)
+
+    def _prepare(self, model: Model) -> None:
+        """Compile the step of a fitted monitor."""
+        framing = model.framing
+        self._gather = Gather(framing) if framing else None
+        self._step = Stepper(model.monitor, framing.nothing if framing else ())
+        self._watch = context_of(model)
+        self._tracker = Tracker(self._watch)
         self._now = nothing_yet(model.monitor)
         self._begun = False
-        self._time: float | None = None
         self._epoch: float | None = None  # when the last one ended [s]
 
     def push(self, time: float, value: Any, fresh: Any = None) -> StepResult:
@@ -115,6 +128,8 @@ class Live:
             fresh = self._fresh if not self._held else self._changed(row)
         before, self._time = self._time, float(time)
         gap_s = 0.0 if before is None else self._time - before
+        if self._comparing is not None:
+            return self._compare(self._comparing, row, np.broadcast_to(fresh, len(row)))
         if self._gather is None:
             return self._judge(self._time, gap_s, row, fresh)
         cut = self._gather.push(self._time, row, np.broadcast_to(fresh, len(row)))
@@ -124,6 +139,18 @@ class Live:
         block = type(cut.epoch)(*(array[0] for array in cut.epoch))
         self._now = self._judge(self._time, gap_s, cut.value[0], cut.fresh[0], block)
         return self._now
+
+    def _compare(
+        self, comparing: ComparingLive, value: Float[np.ndarray, " C"], fresh: Bool[np.ndarray, " C"]
+    ) -> StepResult:
+        assert self._time is not None
+        self.events += comparing.push(self._time, value, fresh)
+        channel, none = comparing.channel, np.full(0, np.nan)
+        stand_in = np.where(channel == FAULT, np.nan, value)
+        untested, silence = np.zeros(len(value), bool), np.zeros(len(value))
+        residual = np.full(len(value), np.nan)
+        verdicts = channel, comparing.sensor.copy(), comparing.sample, UNKNOWN
+        return StepResult(*verdicts, none, none, stand_in, residual, untested, silence)
 
     def _judge(
         self, time: float, gap_s: float, value: Float[np.ndarray, " C"], fresh: Any, block: Any = ()
@@ -143,7 +170,7 @@ class Live:
 
     def open(self) -> list[Event]:
         """Ongoing events; their end_s is None."""
-        return self._tracker.open()
+        return self._comparing.open() if self._comparing is not None else self._tracker.open()
 
     def _changed(self, value: Float[np.ndarray, " C"]) -> Bool[np.ndarray, " C"]:
         fresh = self._fresh.copy()

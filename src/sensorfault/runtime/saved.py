@@ -9,7 +9,7 @@ import numpy as np
 
 from sensorfault.core.expect import expect_path
 from sensorfault.core.files import appearing
-from sensorfault.logs.table import LogError
+from sensorfault.logs.table import Channel, LogError, Sensor
 from sensorfault.relations.axes import Mounting
 from sensorfault.relations.events import METHOD
 from sensorfault.relations.limits import Learned
@@ -79,6 +79,8 @@ def write_comparison(comparison: Comparison, path: Path | str) -> None:
         "mountings": {number: _mounting_out(one) for number, one in learned.mountings.items()},
         "vehicle": learned.vehicle,
         "summary": comparison.summary,
+        "channels": [vars(channel) for channel in comparison.channels],
+        "sensors": [vars(sensor) for sensor in comparison.sensors],
     }
     text = json.dumps(header, sort_keys=True)
     meta = {"__metadata__": {KEY: text, "digest": hashlib.sha256(text.encode()).hexdigest()}}
@@ -105,9 +107,10 @@ def read_comparison(path: Path | str) -> Comparison:
             name: {str(k): float(v) for k, v in header[name].items()} for name in ("rates", "limit", "lags", "facts")
         }
         mountings = {str(k): _mounting_in(v) for k, v in header["mountings"].items()}
-        return Comparison(
-            Learned(**numbers, mountings=mountings, vehicle=str(header["vehicle"])), dict(header["summary"])
-        )
+        learned = Learned(**numbers, mountings=mountings, vehicle=str(header["vehicle"]))
+        channels = tuple(Channel(**channel) for channel in header["channels"])
+        sensors = tuple(Sensor(**sensor) for sensor in header["sensors"])
+        return Comparison(learned, dict(header["summary"]), channels, sensors)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ModelError(f"{path}: its header does not describe a model ({error}); fit the model again.") from None
 

@@ -36,6 +36,16 @@ def as_html(log: Log, method: str, events: Sequence[Event], verdict: Int8[np.nda
     return html.page(f"Detection {line(log, method, events)}", *found, *sensors)
 
 
+def comparison_line(sensors: Sequence[Sensor], summary: Mapping[str, Any]) -> str:
+    """`auto fitted on 'drive' (1:40.00), sensors gyro, accelerometer, gnss`; `auto, not fitted`."""
+    if not sensors:
+        return "auto, not fitted: limits come from the log itself"
+    seconds = summary.get("training_s")
+    time = f" ({clock(seconds)})" if isinstance(seconds, float) else ""
+    named = sensors_named([sensor.name for sensor in sensors])
+    return f"auto fitted on {summary.get('training_log')!r}{time}, {named}"
+
+
 def model_line(method: str, sensors: Sequence[Sensor], tick_s: float, summary: Mapping[str, Any]) -> str:
     """`elm-autoencoder fitted on 'drive' (1:40.00) at 50 Hz, sensors gyro, accelerometer, gnss`."""
     name, seconds = summary.get("training_log"), summary.get("training_s")
