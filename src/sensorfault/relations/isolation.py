@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from sensorfault.relations.tests_of import Test
 
@@ -11,44 +11,47 @@ DEAD = 0.4  # what is left below this share of its limit is no disagreement
 MOST = 5.0  # a group of tests counts no more than this many limits
 EXTRA = 0.15  # price of a further part of one device that must be wrong
 EXTRA_RECEIVER = 0.02  # a receiver is often wrong as a whole
-MORE, RATIO = 0.05, 1.6  # the next explanation must cost this much more for a name
 QUIET = 0.08  # price if what must be wrong shows nowhere else where it should
+MORE, RATIO = 0.05, 1.6  # the next explanation must cost this much more for a name
 
 
 @dataclass(frozen=True)
 class Named:
-    """The answer at one time: `device`, or None if the candidates cannot be told apart; their costs, cheapest first."""
+    """The answer: `device`, or None if the candidates cannot be told apart; their costs, cheapest first."""
 
     device: str | None
     candidates: tuple[tuple[str, float], ...]
 
 
-class Isolation:
-    """Explains K tests by the devices that they compare."""
+@dataclass(frozen=True)
+class _Group:
+    """Tests of one family over one window: one fault moves them together."""
 
-    def __init__(self, tests: tuple[Test, ...]) -> None:
-        self.tests = tests
+    family: str
+    tests: Int[np.ndarray, " g"]
+
+
+class Isolation:
+    """Explains K tests by the devices that they compare. `limit`: of each test."""
+
+    def __init__(self, tests: tuple[Test, ...], limit: Float[np.ndarray, " K"]) -> None:
         parts = sorted({part for test in tests for part, _ in test.relation.blame})
         self.devices = sorted({device for device, _ in parts})
         column = {part: i for i, part in enumerate(parts)}
         self._gain = np.zeros((len(tests), len(parts)))
         for k, test in enumerate(tests):
             for part, sign in test.relation.blame:
-                self._gain[k, column[part]] = sign
+                self._gain[k, column[part]] = sign / limit[k]
         self._mine = {device: [column[part] for part in parts if part[0] == device] for device in self.devices}
-        self._family = [test.relation.family for test in tests]
-        groups: dict[tuple[str, float], list[int]] = {}
+        found: dict[tuple[str, float], list[int]] = {}
         for k, test in enumerate(tests):
-            groups.setdefault((test.relation.family, test.window_s), []).append(k)
-        self._groups = [np.array(group) for group in groups.values()]
+            if np.isfinite(limit[k]):
+                found.setdefault((test.relation.family, test.window_s), []).append(k)
+        self._groups = [_Group(family, np.array(group)) for (family, _), group in found.items()]
 
-    def name(self, scores: Float[np.ndarray, "n K"], limit: Float[np.ndarray, " K"]) -> Named:
+    def name(self, scores: Float[np.ndarray, "n K"]) -> Named:
         """Name the device that explains n moments best. `scores`: changes in units of their limits, NaN untested."""
-        costs = dict.fromkeys(self.devices, 0.0)
-        for score in scores:
-            there = np.isfinite(score)
-            for device in self.devices:
-                costs[device] += self._cost(device, np.where(there, score, 0.0), limit, there) / len(scores)
+        costs = {device: float(self._costs(device, scores).mean()) for device in self.devices}
         order = sorted(costs.items(), key=lambda item: item[1])
         if not order:
             return Named(None, ())
@@ -56,46 +59,53 @@ class Isolation:
         rivals = [one for one in order[1:] if one[1] + MORE < RATIO * (best[1] + MORE)]
         return Named(None if rivals else best[0], (best, *rivals))
 
-    def _cost(
-        self,
-        device: str,
-        z: Float[np.ndarray, " K"],
-        limit: Float[np.ndarray, " K"],
-        there: Bool[np.ndarray, " K"],
-    ) -> float:
+    def _costs(self, device: str, scores: Float[np.ndarray, "n K"]) -> Float[np.ndarray, " n"]:
         """What the device's shifts, fitted by least squares in each family and window, leave unexplained."""
         mine = self._mine[device]
-        total, used = 0.0, set()
-        shown: dict[int, list[tuple[str, float]]] = {}
+        total = np.zeros(len(scores))
+        used = np.zeros((len(scores), len(mine)), bool)
+        shown: dict[str, Float[np.ndarray, "n p"]] = {}
         for group in self._groups:
-            group = group[there[group]]
-            if not len(group):
-                continue
-            left = z[group]
-            most = float(np.abs(left).max())
-            for part in np.flatnonzero(np.abs(self._gain[np.ix_(group, mine)]).sum(axis=0)):
-                seen = np.abs(left[self._gain[group, mine[part]] != 0]).max()
-                shown.setdefault(mine[part], []).append((self._family[group[0]], float(seen)))
-            left = left * min(1.0, MOST / max(most, 1e-12))
-            if most > DEAD:
-                gain = self._gain[np.ix_(group, mine)] / limit[group, None]
-                parts = np.flatnonzero(np.abs(gain).sum(axis=0))
-                if len(parts):
-                    shift = np.linalg.lstsq(gain[:, parts], left, rcond=None)[0]
-                    explained = gain[:, parts] * shift
-                    used |= {mine[p] for p, e in zip(parts, np.abs(explained).max(axis=0), strict=True) if e > DEAD}
-                    left = left - explained.sum(axis=1)
-            total += float((np.maximum(np.abs(left) - DEAD, 0.0) ** 2).sum())
+            z = scores[:, group.tests]
+            gain = self._gain[group.tests][:, mine]
+            seen = np.stack(
+                [np.nan_to_num(np.abs(z[:, gain[:, p] != 0])).max(axis=1, initial=0.0) for p in range(len(mine))], 1
+            )
+            tested = np.stack([np.isfinite(z[:, gain[:, p] != 0]).any(axis=1) for p in range(len(mine))], axis=1)
+            seen = np.where(tested, seen, np.nan)
+            shown[group.family] = np.fmax(shown[group.family], seen) if group.family in shown else seen
+            left, large = _left(z, gain)
+            used |= large
+            total += (np.maximum(np.abs(left) - DEAD, 0.0) ** 2).sum(axis=1)
         further = EXTRA_RECEIVER if device.startswith("gnss") else EXTRA
-        return total + further * max(len(used) - 1, 0) + (QUIET if _quiet(shown) else 0.0)
+        total += further * np.maximum(used.sum(axis=1) - 1, 0)
+        return np.asarray(total + QUIET * _quiet(shown))
 
 
-def _quiet(shown: dict[int, list[tuple[str, float]]]) -> bool:
-    """Whether a part that is over its limit in one family of tests is not to be seen at all in another."""
-    for tests in shown.values():
-        by_family: dict[str, float] = {}
-        for family, size in tests:
-            by_family[family] = max(by_family.get(family, 0.0), size)
-        if max(by_family.values()) > 1 and min(by_family.values()) < DEAD:
-            return True
-    return False
+def _left(
+    z: Float[np.ndarray, "n g"], gain: Float[np.ndarray, "g p"]
+) -> tuple[Float[np.ndarray, "n g"], Bool[np.ndarray, "n p"]]:
+    """What is left of a group's scores after the best shifts, and which parts had to be wrong; 0 where untested."""
+    there = np.isfinite(z)
+    size = np.nan_to_num(np.abs(z)).max(axis=1, initial=0.0)
+    z = np.nan_to_num(z) * np.minimum(1.0, MOST / np.maximum(size, 1e-12))[:, None]
+    large = np.zeros((len(z), gain.shape[1]), bool)
+    patterns, which = np.unique(there, axis=0, return_inverse=True)
+    for i, pattern in enumerate(patterns):
+        rows = np.flatnonzero((which.ravel() == i) & (size > DEAD))
+        parts = np.flatnonzero(np.abs(gain[pattern]).sum(axis=0)) if pattern.any() else np.zeros(0, int)
+        if not len(rows) or not len(parts):
+            continue
+        own = gain[np.ix_(pattern, parts)]
+        shift = z[np.ix_(rows, pattern)] @ np.linalg.pinv(own).T
+        z[np.ix_(rows, pattern)] -= shift @ own.T
+        large[np.ix_(rows, parts)] = np.abs(shift[:, None, :] * own[None]).max(axis=1) > DEAD
+    return z, large
+
+
+def _quiet(shown: dict[str, Float[np.ndarray, "n p"]]) -> Bool[np.ndarray, " n"]:
+    """Moments at which a part that is over its limit in one family of tests is not to be seen at all in another."""
+    stacked = np.stack(list(shown.values()))
+    most = np.nanmax(np.where(np.isnan(stacked), -np.inf, stacked), axis=0)
+    least = np.nanmin(np.where(np.isnan(stacked), np.inf, stacked), axis=0)
+    return np.asarray(((most > 1) & (least < DEAD)).any(axis=1))

@@ -141,7 +141,7 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
     if not piece.tests:
         return []
     by_attitude = np.array([("attitude", "") in dict(test.relation.blame) for test in piece.tests])
-    isolation = Isolation(piece.tests)
+    isolation = Isolation(piece.tests, limit)
     votes = np.where(by_attitude, np.nan, score)
     over = np.nan_to_num(np.abs(votes)).max(axis=1) > 1
     lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~over
@@ -151,7 +151,7 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
             ticks = first + np.flatnonzero(alarm[first : last + 1])
             if len(ticks) < LEAST_TICKS:
                 continue
-            named = Named(device, ()) if device else isolation.name(votes[_some(ticks)], limit)
+            named = Named(device, ()) if device else isolation.name(votes[_some(ticks)])
             if named.device is None and not device:
                 named = _by_the_attitude(piece, score[ticks], named)
             episodes.append(_episode(piece, score if device else votes, limit, ticks, named))

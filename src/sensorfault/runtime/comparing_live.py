@@ -81,7 +81,7 @@ class ComparingLive:
         judged = judge(log, self._comparison.learned)
         found = events_of(judged, self._compared_s)
         self._set_verdicts(log, judged, [event for event in found if event.end_s is None])
-        return self._update(list(found), float(log.time[0]))
+        return self._update(list(found))
 
     def _set_verdicts(self, log: Log, judged: Judged, going: list[Event]) -> None:
         tested = tested_sensors(log, judged, self._names)[-1]
@@ -91,12 +91,12 @@ class ComparingLive:
                 self.sensor[self._names.index(event.sensor)] = FAULT
         self.sample = FAULT if going else OK if tested.any() else UNKNOWN
 
-    def _update(self, found: list[Event], first_s: float) -> list[Event]:
+    def _update(self, found: list[Event]) -> list[Event]:
         """Take over what goes on with its first start; return what has ended since the last comparison."""
         ended: list[Event] = []
         before, self._going = self._going, []
         for event in found:
-            known = next((one for one in before if one.sensor == event.sensor and _meet(one, event, first_s)), None)
+            known = next((one for one in before if one.sensor == event.sensor and _meet(one, event)), None)
             if event.end_s is None:
                 self._going.append(
                     event if known is None else replace(event, start_s=min(known.start_s, event.start_s))
@@ -110,6 +110,6 @@ class ComparingLive:
         return ended
 
 
-def _meet(known: Event, event: Event, first_s: float) -> bool:
-    """Whether an event is the known one: it began near, or before what is kept."""
-    return event.start_s <= max(known.start_s, first_s) + KEPT_S / 2
+def _meet(known: Event, event: Event) -> bool:
+    """Whether an event of the same sensor is the known one, which goes on or ended after that began."""
+    return event.end_s is None or event.end_s >= known.start_s

@@ -8,10 +8,11 @@ from sensorfault.relations.levels.finding import Finding, device_of
 from sensorfault.relations.signals import Signal
 
 SILENT_S, SILENT_PERIODS = 3.5, 5.0
+SETTLED = 2  # measurements before which a device has not begun
 
 
 def silences(signals: dict[str, Signal], pieces: list[tuple[float, float]], vehicle: str) -> Iterator[Finding]:
-    """Devices without a valid measurement while the others go on; not before their first one.
+    """Devices without a valid measurement while the others go on; not before their first few.
 
     A receiver under water has nothing to receive.
     """
@@ -23,7 +24,8 @@ def silences(signals: dict[str, Signal], pieces: list[tuple[float, float]], vehi
         time = np.unique(np.concatenate([signal.time for signal in mine]))
         for start, end in pieces:
             inside = time[(time >= start) & (time <= end)]
-            begun = time[0] < start
+            begun = len(time) > SETTLED and time[SETTLED] < start
+            inside = inside if begun else inside[SETTLED:]
             stops = np.r_[start if begun else np.zeros(0), inside, end] if len(inside) or begun else np.zeros(0)
             for i in np.flatnonzero(np.diff(stops) > limit):
                 yield Finding(
