@@ -55,7 +55,7 @@ USER = """
 import sensorfault as sf
 
 log = sf.read("drive.csv")
-model = sf.fit(log)
+model = sf.fit(log, "pca")
 found = sf.detect(model, log)
 reveal_type(sf.read)
 reveal_type(model)

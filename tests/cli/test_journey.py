@@ -8,7 +8,10 @@ import pytest
 from cli.conftest import Run, Said
 from sensorfault.methods.catalog import METHODS
 
-KEYS = {"start_s", "end_s", "subject", "sensor", "channel", "kind", "peak_score", "limit", "method"}
+KEYS = {"start_s", "end_s", "subject", "sensor", "channel", "kind", "peak_score", "limit", "method"} | {
+    "found_by",
+    "candidates",
+}
 FAULTS = ("spike:gyro.x:61:0:30sigma", "offset:gyro.z:64:3:20sigma", "frozen:accelerometer.x:70:3", "missing:gyro:76:2")
 
 
@@ -95,9 +98,11 @@ def test_detect_without_a_model_says_what_that_means(run: Run, drive: Path) -> N
 
 
 def test_detect_says_that_columns_were_guessed(run: Run, drive: Path, car: Path) -> None:
-    guessed = run("detect", drive, "--model", car)
+    guessed = run("detect", drive, "--method", "pca")
     assert guessed.code == 0, guessed.err
     assert "sensorfault init" in guessed.err
+    modelled = run("detect", drive, "--model", car)  # the model knows what the columns are
+    assert "sensorfault init" not in modelled.err
     assert guessed.out == ""
     assert "none" in guessed.err
     run("init", drive)
@@ -146,7 +151,7 @@ def test_the_catalog(run: Run) -> None:
     assert said.code == 0
     assert said.err == ""
     result = json.loads(said.out)["methods"]
-    assert [method["name"] for method in result] == list(METHODS)
+    assert [method["name"] for method in result] == ["auto", *METHODS]
     assert all(set(method) == {"name", "title", "source", "false_alarm_rate"} for method in result)
     table = run("methods")
     assert "elm-autoencoder" in table.out

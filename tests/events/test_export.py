@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -43,13 +44,26 @@ def test_json_lines(tmp_path: Path) -> None:
     assert [json.loads(line) for line in lines] == [event.as_dict() for event in EVENTS]
 
 
+def in_a_table(event: Event) -> dict[str, object]:
+    """Its fields; candidates in one cell."""
+    return {**event.as_dict(), "candidates": ", ".join(event.candidates) or None}
+
+
+def test_candidates_stand_in_one_cell(tmp_path: Path) -> None:
+    event = replace(EVENTS[2], sensor=None, channel=None, candidates=("wheels", "gnss"), found_by="wheel | gnss.speed")
+    write_events([event], log(), tmp_path / "events.csv")
+    (row,) = csv.DictReader((tmp_path / "events.csv").read_text().splitlines())
+    assert (row["candidates"], row["found_by"]) == ("wheels, gnss", "wheel | gnss.speed")
+    assert "unknown which: wheels or gnss" in str(event)
+
+
 def test_csv_and_parquet(tmp_path: Path) -> None:
     write_events(EVENTS, log(), tmp_path / "events.csv")
     rows = list(csv.DictReader((tmp_path / "events.csv").read_text().splitlines()))
     assert [row["kind"] for row in rows] == ["offset", "missing", "unknown", "frozen"]
     assert rows[1]["end_s"] == rows[1]["channel"] == ""
     write_events(EVENTS, log(), tmp_path / "events.parquet")
-    assert pl.read_parquet(tmp_path / "events.parquet").rows(named=True) == [event.as_dict() for event in EVENTS]
+    assert pl.read_parquet(tmp_path / "events.parquet").rows(named=True) == [in_a_table(event) for event in EVENTS]
 
 
 @pytest.mark.parametrize("suffix", [".jsonl", ".csv", ".parquet", ".mcap", ".bag", ""])

@@ -176,7 +176,7 @@ def test_names_from_files_stay_names() -> None:
 def test_equality_and_fields_are_as_before() -> None:
     assert replace(OFFSET) == OFFSET
     assert replace(OFFSET, limit=4.0) != OFFSET
-    names = "start_s end_s subject sensor channel kind peak_score limit method"
+    names = "start_s end_s subject sensor channel kind peak_score limit method found_by candidates"
     assert " ".join(OFFSET.as_dict()) == names
     fault = Fault("frozen", "gyro", "z", 52.1, 15.0)
     assert Fault(**fault.as_dict()) == fault

@@ -16,7 +16,7 @@ from sensorfault.runtime.runners import Stepper
 def test_events_are_rows_with_the_fields_of_an_event() -> None:
     found = fitted.found()
     table = found.events_table()
-    assert table.rows(named=True) == [event.as_dict() for event in found.events]
+    assert table.rows(named=True) == [{**event.as_dict(), "candidates": None} for event in found.events]
     assert table["end_s"].null_count() == 1
     assert replace(found, events=()).events_table().columns == table.columns
 

@@ -85,10 +85,10 @@ class VehicleFile:
 
     def conflict(self, other: "VehicleFile") -> str:
         """The first column that the two describe in another way, in words; empty if they agree."""
-        mine = {c.column: (s.name, c.name, c.unit) for s in self.sensors for c in s.channels}
+        mine = {(s.file, c.column): (s.name, c.name, c.unit) for s in self.sensors for c in s.channels}
         for sensor in other.sensors:
             for c in sensor.channels:
-                here, there = mine.get(c.column), (sensor.name, c.name, c.unit)
+                here, there = mine.get((sensor.file, c.column)), (sensor.name, c.name, c.unit)
                 if here is not None and here != there:
                     return f"column '{c.column}' is {_spoken(here)} in one and {_spoken(there)} in the other"
         return ""

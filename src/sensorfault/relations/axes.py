@@ -198,7 +198,7 @@ def _forward(signals: dict[str, Signal], acc: Signal, gravity: float, axis: int)
     if speed is None and "gnss.velocity" in signals:
         velocity = signals["gnss.velocity"]
         speed = replace(velocity, value=np.hypot(*velocity.value.T)[:, None])
-    if speed is None or len(speed.time) < 10:
+    if speed is None or len(speed.time) < 3 * round(2.0 / max(speed.period_s, 1e-3)) + 10:
         return choices[0], False
     n = max(round(2.0 / max(speed.period_s, 1e-3)), 1)
     gained = speed.value[n:, 0] - speed.value[:-n, 0]

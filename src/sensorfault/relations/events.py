@@ -44,7 +44,7 @@ def events_of(judged: Judged, last_s: float) -> tuple[Event, ...]:
         )
         (unknown if one.device is None else named).append(item)
     joined = _joined(named)
-    joined += [item for item in unknown if not any(_explains(other, item) for other in joined)]
+    joined += [item for item in _joined(unknown) if not any(_explains(other, item) for other in joined)]
     joined.sort(key=lambda item: item.start_s)
     return tuple(_event(item, judged.signals, last_s) for item in joined)
 
@@ -53,7 +53,7 @@ def _joined(items: list[_Item]) -> list[_Item]:
     """Those of one device that lie close together as one; its kind is the first that is known."""
     found: list[_Item] = []
     for item in sorted(items, key=lambda item: item.start_s):
-        last = next((one for one in reversed(found) if one.device == item.device), None)
+        last = next((one for one in reversed(found) if _same(one, item)), None)
         if last is None or item.start_s > last.end_s + (SAME_TEST_S if item.test == last.test else JOIN_S):
             found.append(item)
             continue
@@ -62,6 +62,13 @@ def _joined(items: list[_Item]) -> list[_Item]:
         both = replace(worse, start_s=last.start_s, end_s=max(last.end_s, item.end_s), kind=kind)
         found[found.index(last)] = both
     return found
+
+
+def _same(one: _Item, other: _Item) -> bool:
+    """Whether two stretches accuse the same: one device, or the same candidates."""
+    return one.device == other.device and set(one.candidates if not one.device else ()) == set(
+        other.candidates if not other.device else ()
+    )
 
 
 def _explains(known: _Item, item: _Item) -> bool:

@@ -9,10 +9,11 @@ from jaxtyping import Bool, Float
 
 from sensorfault.relations.signals import Signal
 
-Kept = TypeVar("Kept", bound="Float[np.ndarray, 'T k'] | None")
+Kept = TypeVar("Kept")
 STEP_S = 0.2  # of the grid
 PAUSE_S = 1.0  # nothing at all was recorded for longer: the recorder paused
 STALE_S, STALE_PERIODS = 1.5, 3.1  # a longer gap between two measurements is a hole: no window may span it
+LONE = frozenset({"barometer", "gnss.height", "depth"})
 GRAVITY = 9.80665  # [m/s^2]
 
 
@@ -62,8 +63,11 @@ class Grid:
         return on
 
     def value(self, key: str) -> Float[np.ndarray, "T k"]:
-        """The signal."""
-        return self.keep("v " + key, lambda: self.put(key, self.signals[key].value))
+        """The signal; of heights the median of three neighbours, so that one odd sample moves nothing else."""
+        signal = self.signals[key]
+        return self.keep(
+            "v " + key, lambda: self.put(key, _without_lone(signal) if signal.role in LONE else signal.value)
+        )
 
     def integral(self, key: str) -> Float[np.ndarray, "T k"]:
         """Its integral since the piece began."""
@@ -75,6 +79,14 @@ class Grid:
             self._kept[name] = make()
         kept: Kept = self._kept[name]
         return kept
+
+
+def _without_lone(signal: Signal) -> Float[np.ndarray, "n k"]:
+    """Median of each measurement and its two neighbours."""
+    x = signal.value
+    if len(x) < 3:
+        return x
+    return np.asarray(np.concatenate([x[:1], np.median(np.stack([x[:-2], x[1:-1], x[2:]]), axis=0), x[-1:]]))
 
 
 def integrated(time: Float[np.ndarray, " n"], value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "n k"]:

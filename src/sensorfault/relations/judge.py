@@ -7,11 +7,11 @@ from jaxtyping import Float
 
 from sensorfault.logs.table import Log
 from sensorfault.relations import axes, facts, levels, limits
-from sensorfault.relations.grid import Grid, pieces_of
+from sensorfault.relations.grid import STEP_S, Grid, pieces_of
 from sensorfault.relations.isolation import Isolation, Named
 from sensorfault.relations.levels.finding import Finding, runs
 from sensorfault.relations.signals import Signal, signals_of
-from sensorfault.relations.tests_of import Piece, judged
+from sensorfault.relations.tests_of import LONGEST_DRIFTING_S, Piece, judged
 from sensorfault.relations.vehicle_class import class_of
 from sensorfault.relations.witnesses import SLOW_FAST_S
 
@@ -19,6 +19,7 @@ SHORTEST_S = 8.0  # a shorter piece compares nothing
 JOIN_S = 10.0  # alarms closer than this are one episode
 LEAST_TICKS = 3  # alarms that an episode needs
 SURE = 0.6  # share of the named ticks that one device needs
+TURNED = {"acc", "compass"}  # what the attitude turns into the local frame
 IMPACT = 100.0  # [m/s^2]: judging ends
 
 
@@ -142,9 +143,12 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
         return []
     by_attitude = np.array([("attitude", "") in dict(test.relation.blame) for test in piece.tests])
     isolation = Isolation(piece.tests, limit)
+    turned = np.array([bool(TURNED & set(test.relation.kind.split("|"))) for test in piece.tests])
+    alone = _over(np.where(by_attitude | turned, np.nan, score))
+    lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~alone
     votes = np.where(by_attitude, np.nan, score)
-    over = np.nan_to_num(np.abs(votes)).max(axis=1) > 1
-    lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~over
+    votes[np.ix_(_soon_after(lone), turned)] = np.nan  # what a wrong attitude turned says nothing
+    over = _over(votes)
     episodes = []
     for device, alarm in ((None, over), ("attitude", lone)):
         for first, last in runs(piece.grid.time, alarm, JOIN_S):
@@ -156,6 +160,17 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
                 named = _by_the_attitude(piece, score[ticks], named)
             episodes.append(_episode(piece, score if device else votes, limit, ticks, named))
     return episodes
+
+
+def _over(score: Float[np.ndarray, "T K"]) -> np.ndarray:
+    """Ticks at which some test is over its limit."""
+    return np.asarray(np.nan_to_num(np.abs(score)).max(axis=1) > 1)
+
+
+def _soon_after(ticks: np.ndarray) -> np.ndarray:
+    """These ticks, and those whose windows still hold them."""
+    width = round(LONGEST_DRIFTING_S / STEP_S)
+    return np.convolve(ticks, np.ones(width))[: len(ticks)] > 0
 
 
 def _some(ticks: np.ndarray, most: int = 60) -> np.ndarray:

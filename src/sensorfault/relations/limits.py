@@ -17,13 +17,10 @@ TENTH = 10.0  # a limit is this many scales
 # Constant differences of rates that are usual for such sensors, by the part of a relation: a calibration, no fault.
 USUAL_RATE = {"gyro": 0.02, "side": 0.1, "acc": 0.6, "accelerometer": 0.6, "wheel": 1.5, "climb": 0.3, "reckoned": 0.3}
 RATE_WINDOWS_S = (4.0, 15.0)
-SPARE, MOST_FACTOR, LEAST = 1.6, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
+SPARE, MOST_FACTOR, SHARE = 1.6, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
 BLOCK_S, BLOCKS = 20.0, 5  # blocks of 20 s, or a fifth of the piece
 NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
 CLASSES = ("copter", "wing", "car", "underwater")
-
-
-ByTest = dict[str, tuple[Test, list[Float[np.ndarray, " T"]]]]  # each test, with its changes in the pieces
 
 
 @dataclass(frozen=True)
@@ -32,6 +29,11 @@ class Bounds:
 
     floor: float
     ceiling: float
+
+
+# A steering turns a car by a kinematic model, which real tyres do not follow, and no real log of turns has one.
+LEAST = {"steering": Bounds(0.03, 0.1)}
+ByTest = dict[str, tuple[Test, list[Float[np.ndarray, " T"]]]]  # each test, with its changes in the pieces
 
 
 @dataclass
@@ -62,11 +64,12 @@ def table() -> dict[str, dict[tuple[str, float], Bounds]]:
 
 def bounds(vehicle: str, kind: tuple[str, float]) -> Bounds | None:
     """Those of a class; of an unknown class the widest of all; None if no class has any."""
-    mine = table().get(vehicle, {}).get(kind)
-    if mine is not None:
-        return mine
-    all_of = [classes[kind] for classes in table().values() if kind in classes]
-    return Bounds(max(one.floor for one in all_of), max(one.ceiling for one in all_of)) if all_of else None
+    classes = (
+        [table()[vehicle]] if kind in table().get(vehicle, {}) else [one for one in table().values() if kind in one]
+    )
+    least = next((LEAST[part] for part in kind[0].split("|") if part in LEAST), None)
+    known = [one[kind] for one in classes] + ([least] if least else [])
+    return Bounds(max(one.floor for one in known), max(one.ceiling for one in known)) if known else None
 
 
 def block_maxima(moved: Float[np.ndarray, " T"]) -> Float[np.ndarray, " B"]:
@@ -98,7 +101,7 @@ def of_healthy(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts:
     for key, maxima in blocks.items():
         test = by_test[key][0]
         known = bounds(vehicle, test.kind)
-        least = LEAST * TENTH * known.floor if known else 0.0
+        least = SHARE * TENTH * known.floor if known else 0.0
         most = TENTH * known.ceiling if known else np.inf
         scale = min(factors[test.relation.family], MOST_FACTOR) * SPARE * float(maxima.max())
         learned.limit[key] = float(np.clip(scale, least, max(most, SPARE * float(maxima.max()))))
@@ -133,10 +136,9 @@ def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dic
         maxima = np.concatenate([block_maxima(part - bias) for part in parts])
         if not len(maxima):
             continue
-        scale = float(np.median(maxima))
-        if known is not None:
-            scale = float(np.clip(scale, known.floor, known.ceiling))
-        learned.limit[key] = TENTH * scale
+        if known is None:
+            continue  # what healthy logs of any class show is not known: without a fit this does not vote
+        learned.limit[key] = TENTH * float(np.clip(np.median(maxima), known.floor, known.ceiling))
     return learned
 
 

@@ -148,26 +148,27 @@ def _angles(keys: set[str], receivers: list[str], courses: bool) -> Iterator[Rel
             {("attitude", ""): 1, ("gyro", ""): -1},
             lagged=False,
         )
-    yaws: list[tuple[str, str, Witness, tuple[tuple[str, str], ...]]] = []
-    # What turns an angle of the wheels or a side force into a yaw is a suspect, too: the speed.
-    speed = "wheel" if "wheel" in keys else "gnss"
-    yaws += [("gyro", f"gyro{n}", w.turned(2, n), ((f"gyro{n}", ""),)) for n in _numbers(keys, "gyro")]
+    yaws: list[tuple[str, str, Witness, Blame]] = []
+    # What turns an angle of the wheels or a side force into a yaw is a suspect, too: a speed that is too large makes
+    # the one turn too much, the other too little.
+    speed = ("wheel", "") if "wheel" in keys else ("gnss", "velocity")
+    yaws += [("gyro", f"gyro{n}", w.turned(2, n), {(f"gyro{n}", ""): 1.0}) for n in _numbers(keys, "gyro")]
     if "yaw_rate" in keys and "gyro" not in keys:
-        yaws.append(("gyro", "yaw rate", w.turned(2), (("yaw_rate", ""),)))
+        yaws.append(("gyro", "yaw rate", w.turned(2), {("yaw_rate", ""): 1.0}))
     if "steering" in keys:
-        yaws.append(("steering", "steering", w.steered, (("steering", ""), (speed, "steered"))))
-    yaws.append(("side", "side acceleration", w.leaned, (("accelerometer", "level"), (speed, "leaned"))))
-    yaws.append(("attitude", "attitude.yaw", w.angle("attitude", 2), (("attitude", ""),)))
+        yaws.append(("steering", "steering", w.steered, {("steering", ""): 1.0, speed: 1.0}))
+    yaws.append(("side", "side acceleration", w.leaned, {("accelerometer", "level"): 1.0, speed: -1.0}))
+    yaws.append(("attitude", "attitude.yaw", w.angle("attitude", 2), {("attitude", ""): 1.0}))
     if "heading" in keys:
-        yaws.append(("heading", "heading", w.angle("heading", 0), (("heading", ""),)))
+        yaws.append(("heading", "heading", w.angle("heading", 0), {("heading", ""): 1.0}))
     for n in _numbers(keys, "magnetometer"):
-        yaws.append(("compass", f"magnetometer{n}", w.compass(n), ((f"magnetometer{n}", ""),)))
-    yaws += [("course", f"{g}.course", w.course(g), ((g, "course"),)) for g in receivers] if courses else []
+        yaws.append(("compass", f"magnetometer{n}", w.compass(n), {(f"magnetometer{n}", ""): 1.0}))
+    yaws += [("course", f"{g}.course", w.course(g), {(g, "course"): 1.0}) for g in receivers] if courses else []
     for i, (kind, name, left, mine) in enumerate(yaws):
         for other, second, right, theirs in yaws[i + 1 :]:
             if kind == other == "gyro":
                 continue  # twins are compared by axis
-            blame = dict.fromkeys(theirs, -1.0) | dict.fromkeys(mine, 1.0)
+            blame = {part: mine.get(part, 0.0) - theirs.get(part, 0.0) for part in (*mine, *theirs)}
             lagged = other in ("course", "steering")
             name_of = f"{name} | {second}"
             yield _row(name_of, f"{kind}|{other}", "yaw", 1, left, right, blame, circular=True, lagged=lagged)

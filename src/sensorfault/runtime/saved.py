@@ -39,11 +39,11 @@ def header_of(path: Path) -> dict[str, Any]:
         text = file.read(length)
     try:
         meta = json.loads(text).get("__metadata__", {})
-        if KEY not in meta:
-            raise ModelError(f"{path}: a safetensors file, but not of sensorfault; give a file that 'fit' wrote.")
-        header = json.loads(meta[KEY])
+        header = json.loads(meta[KEY]) if KEY in meta else None
     except (ValueError, AttributeError, TypeError, RecursionError):
         raise refused from None
+    if header is None:
+        raise ModelError(f"{path}: a safetensors file, but not of sensorfault; give a file that 'fit' wrote.")
     if not isinstance(header, dict):
         raise refused
     return {**header, "digest": meta.get("digest"), "text": meta[KEY]}

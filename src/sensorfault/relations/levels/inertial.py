@@ -10,10 +10,11 @@ from sensorfault.relations.levels.windows import median_around, median_of_last, 
 from sensorfault.relations.signals import Signal
 
 REST_ACC, REST_RATE, REST_RATE_SD = 0.25, 0.08, 0.03  # at rest: sd of |a|, mean and sd of |rate| over 1 s
+REST_M_S = 1.0  # slower than this a vehicle may be at rest
 RESTING = 8  # measurements in a second that can show rest
 REST_OFF, REST_WINDOWS = 0.6, 3  # gravity at rest may be off by this [m/s^2], median of three windows
 FLIGHT_OFF, TILT_RAD = 2.0, 1.05  # mean acceleration over 2 s may differ from g by this, unless the vehicle leans
-GYRO_REST = 0.3  # a gyro at rest may read this [rad/s]; less is a matter of calibration
+GYRO_REST = 0.3  # a gyro may read this while a vehicle on wheels stands [rad/s]; less is a matter of calibration
 ROUGH_RATE, ROUGH_ACC = 0.7, 2.5  # rougher than this [rad/s, m/s^2] gravity is not to be seen
 
 
@@ -22,7 +23,7 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
     for signal in grid.signals.values():
         if signal.role == "accelerometer":
             yield from _gravity(grid, signal, vehicle)
-        elif signal.role == "gyro":
+        elif signal.role == "gyro" and vehicle == "car":
             yield from _rate_at_rest(grid, signal)
 
 
@@ -36,7 +37,18 @@ def _at_rest(grid: Grid, acc: Signal) -> tuple[np.ndarray, np.ndarray]:
     if not len(at) or not len(when):
         return np.zeros(0), np.zeros(0)
     still = (sd < REST_ACC) & (np.interp(at, when, rate) < REST_RATE) & (np.interp(at, when, rate_sd) < REST_RATE_SD)
+    still &= ~_moving(grid, at)
     return at[still], mean[still]
+
+
+def _moving(grid: Grid, at: np.ndarray) -> np.ndarray:
+    """Times at which a receiver or wheels say that the vehicle moves: to an inertial unit smooth motion is rest."""
+    moving = np.zeros(len(at), bool)
+    for key in ("gnss.velocity", "gnss.speed", "wheel", "dvl"):
+        if key in grid:
+            signal = grid.signals[key]
+            moving |= np.interp(at, signal.time, np.linalg.norm(signal.value, axis=1)) > REST_M_S
+    return moving
 
 
 def _gravity(grid: Grid, acc: Signal, vehicle: str) -> Iterator[Finding]:
@@ -74,6 +86,6 @@ def _rate_at_rest(grid: Grid, gyro: Signal) -> Iterator[Finding]:
     when, rate, rate_sd = windows(gyro.time, np.linalg.norm(gyro.value, axis=1), 1.0, RESTING)
     if len(at) < 2 or len(when) < 5:
         return
-    still = (np.interp(when, at, sd) < 0.05) & (rate_sd < REST_RATE_SD)
+    still = (np.interp(when, at, sd) < 0.05) & (rate_sd < REST_RATE_SD) & ~_moving(grid, when)
     rate = np.where(still, rate, 0.0)
     yield from worst("gyro" + number, when, median_around(rate, 2), GYRO_REST, 10.0, "rate at rest", 0.5, lasting=True)
