@@ -14,6 +14,7 @@ from sensorfault.relations.events import METHOD, events_of, sensor_of
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
 from sensorfault.runtime import show
+from sensorfault.runtime.coverage import Coverage
 from sensorfault.runtime.result import Detection, Trace
 
 NO_LEVELS = frozenset({"attitude", "gnss.course"})
@@ -50,21 +51,6 @@ class Comparison:
 
     def __repr__(self) -> str:
         return f"<Comparison {show.comparison_line(self.sensors, self.summary)}>"
-
-
-@dataclass(frozen=True)
-class Coverage:
-    """Which sensors were compared with which others, and which were not and why.
-
-    `alone`: those of the latter that were still checked for spikes, exact repeats, silence and impossible values.
-
-    `sentences`: what else to know of the answer: where the limits come from, what is usual for this vehicle.
-    """
-
-    compared: dict[str, tuple[str, ...]]
-    not_compared: dict[str, str]
-    alone: tuple[str, ...] = ()
-    sentences: tuple[str, ...] = ()
 
 
 def comparison_of(*logs: Log) -> Comparison:

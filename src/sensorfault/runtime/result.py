@@ -12,9 +12,9 @@ from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log, LogError
 from sensorfault.runtime import show, tables
+from sensorfault.runtime.coverage import Coverage
 
 if TYPE_CHECKING:
-    from sensorfault.runtime.compared import Coverage
     from sensorfault.runtime.model import Model
 
 PER_ROW = ("channel", "sensor", "sample", "motion", "repaired", "traces")
@@ -87,7 +87,7 @@ class Detection:
     model: "Model | None" = None
     fitted_on_s: tuple[float, float] | None = None
     rows_left_out: int = 0
-    coverage: "Coverage | None" = None
+    coverage: Coverage | None = None
 
     if not TYPE_CHECKING:  # else a type checker would accept any name
 
