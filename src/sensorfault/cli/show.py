@@ -63,6 +63,7 @@ def patient(doing: str) -> Iterator[Callable[[float], None]]:
         yield update
 
 
+SHOWN = 40  # events
 _NUMBERS = {"peak", "limit", "n", "recall", "chance", "magnitude"}  # columns
 
 
@@ -104,7 +105,17 @@ def heading(text: str, answer: bool = True) -> None:
 def events(found: "Sequence[Event]", title: str, answer: bool = True) -> None:
     """Print the events as a table, or one sentence if there are none."""
     if found:
-        table(title, cells.EVENT_COLUMNS, [cells.event_row(event) for event in found], answer)
+        rows = [cells.event_row(event) for event in found]
+        columns: tuple[str, ...] = cells.EVENT_COLUMNS
+        if any(event.found_by for event in found):
+            columns, rows = (
+                (*columns, "found by"),
+                [(*row, e.found_by or "") for row, e in zip(rows, found, strict=True)],
+            )
+        if len(rows) > SHOWN and answer:
+            say(f"{len(rows)} events; the first {SHOWN} are shown, all are in --json and --out.")
+            rows = rows[:SHOWN]
+        table(title, columns, rows, answer)
     else:
         say(f"{title}: none.")
 

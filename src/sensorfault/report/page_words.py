@@ -118,9 +118,9 @@ def event_table(sketch: Sketch) -> str:
     for i, e in enumerate(sketch.events, 1):
         against = "–" if e.peak_score is None else f"{number(e.peak_score)} / {number(e.limit)}"
         against += " s silent" if e.kind == "missing" and e.peak_score is not None else ""
-        row = _row(e.start_s, e.end_s, end, (e.accused, e.channel or "–", e.kind, against, e.method))
+        row = _row(e.start_s, e.end_s, end, (e.accused, e.channel or "–", e.kind, against, e.found_by or e.method))
         rows.append(row.replace("<td", f"<td>{i}</td><td", 1))
-    return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "method"), rows)
+    return _table(("", "start", "end", "sensor", "channel", "kind", "peak / limit", "found by"), rows)
 
 
 def truth_table(sketch: Sketch, truth: Sequence[Fault]) -> str:

@@ -19,6 +19,7 @@ from sensorfault.logs.table import LogError
 
 _COMMAND = re.compile(r"(^|[_/])(cmd|command|setpoint|goal|target|desired)([_/]|$)", re.IGNORECASE)
 _ROWS = 500_000  # a guess looks at so many rows from the beginning
+NAMES_SHOWN = 8  # of what is left out
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def look_at(file: Path, tell: Callable[[float], None]) -> Look:
             used = [one.file.table or "" for one in guesses]
             said.append(
                 f"{file.name}: a log of {stock.name}; sensors are in {', '.join(used)}. Left out as not sensors: "
-                f"{', '.join(sorted(set(tables) - set(used)))}."
+                f"{_some(sorted(set(tables) - set(used)))}."
             )
             return Look(guesses, errors, list(dict.fromkeys(said)))
     commands = [name for name in tables if _COMMAND.search(name)]
@@ -96,8 +97,13 @@ def look_at_topics(topics: Mapping[str, Path], others: list[str], tell: Callable
             errors.append(error)
     used = [one.path.name for one in guesses]
     left = sorted([*others, *(tables[name].path.name for name in tables if tables[name].path.name not in used)])
-    out = f" Left out as not sensors: {', '.join(left)}." if left else ""
+    out = f" Left out as not sensors: {_some(left)}." if left else ""
     return Look(guesses, errors, [f"Topics of {PX4.name}, one file each; sensors are in {', '.join(used)}.{out}"])
+
+
+def _some(names: list[str]) -> str:
+    more = f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
+    return f"{', '.join(names[:NAMES_SHOWN])}{more}"
 
 
 def _guess_tables(tables: Tables, fields: Mapping[str, Fields] | None) -> tuple[list[Guess], list[LogError]]:

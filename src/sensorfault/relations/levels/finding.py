@@ -47,8 +47,9 @@ def worst(
     half_s: float = 0.0,
     lasting: bool = False,
 ) -> Iterator[Finding]:
-    """One finding for each run of values beyond a limit."""
+    """One finding for each run of values beyond a limit. `lasting` ones are offsets."""
     for first, last in runs(time, np.abs(value) > limit, join_s):
         peak = value[first : last + 1][np.argmax(np.abs(value[first : last + 1]))]
         start_s, end_s = float(time[first]) - half_s, float(time[last]) + half_s
-        yield Finding(device, start_s, end_s, test, float(peak), limit, lasting=lasting)
+        kind = "offset" if lasting else "unknown"
+        yield Finding(device, start_s, end_s, test, float(peak), limit, kind, lasting)
