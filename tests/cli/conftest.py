@@ -117,3 +117,14 @@ def car(tmp_path: Path, fitted_model: bytes) -> Path:
     """car.sensorfault in the folder that commands run in."""
     (tmp_path / "car.sensorfault").write_bytes(fitted_model)
     return Path("car.sensorfault")
+
+
+def refusal(said: Said) -> str:
+    """The one sentence of a refusal; what precedes it are notes and progress, indented or named for what they are."""
+    assert said.code == 2, said
+    assert said.out == ""
+    assert "Traceback" not in said.err
+    lines = said.err.splitlines()
+    ours = [line for line in lines if line.startswith("sensorfault: ")]
+    assert ours == lines[-1:], said.err
+    return ours[0]

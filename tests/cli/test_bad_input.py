@@ -7,23 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from cli.conftest import Run, Said
+from cli.conftest import Run, Said, refusal
 
 
 def listing(folder: Path) -> dict[str, bytes | None]:
     """Every file with its content, every folder."""
     return {str(f.relative_to(folder)): f.read_bytes() if f.is_file() else None for f in sorted(folder.rglob("*"))}
-
-
-def refusal(said: Said) -> str:
-    """The one sentence of a refusal; what precedes it are notes and progress, indented or named for what they are."""
-    assert said.code == 2, said
-    assert said.out == ""
-    assert "Traceback" not in said.err
-    lines = said.err.splitlines()
-    ours = [line for line in lines if line.startswith("sensorfault: ")]
-    assert ours == lines[-1:], said.err
-    return ours[0]
 
 
 def lines_of(drive: Path) -> list[str]:

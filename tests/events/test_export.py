@@ -50,11 +50,19 @@ def in_a_table(event: Event) -> dict[str, object]:
 
 
 def test_candidates_stand_in_one_cell(tmp_path: Path) -> None:
-    event = replace(EVENTS[2], sensor=None, channel=None, candidates=("wheels", "gnss"), found_by="wheel | gnss.speed")
+    event = replace(EVENTS[0], kind="unknown", sensor=None, channel=None, candidates=("wheels", "gnss"), found_by="wheel | gnss.speed")
     write_events([event], log(), tmp_path / "events.csv")
     (row,) = csv.DictReader((tmp_path / "events.csv").read_text().splitlines())
     assert (row["candidates"], row["found_by"]) == ("wheels, gnss", "wheel | gnss.speed")
     assert "unknown which: wheels or gnss" in str(event)
+
+
+@pytest.mark.parametrize("name", ["=1+1", "+x", "-x", "@SUM(A1)"])
+def test_a_spreadsheet_runs_no_name(name: str, tmp_path: Path) -> None:
+    write_events([replace(EVENTS[0], sensor=name, channel=name)], log(), tmp_path / "events.csv")
+    (row,) = csv.DictReader((tmp_path / "events.csv").read_text().splitlines())
+    assert row["sensor"] == row["channel"] == f"'{name}"
+    assert float(row["start_s"]) == EVENTS[0].start_s
 
 
 def test_csv_and_parquet(tmp_path: Path) -> None:

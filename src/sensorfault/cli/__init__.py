@@ -1,6 +1,8 @@
 """The command line: one verb a file. Nothing slow is imported before a verb runs."""
 
+import io
 import os
+import signal
 import sys
 from collections import UserDict
 from importlib import import_module
@@ -38,6 +40,7 @@ def main() -> None:
     """Run the command line: bad input is one sentence on stderr and exit code 2."""
     from sensorfault.cli.errors import sentence_of
 
+    _be_interruptible()
     os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "3")  # XLA's own messages are no news to a user
     try:
         cli(standalone_mode=False)
@@ -45,6 +48,9 @@ def main() -> None:
         sys.exit(done.exit_code)
     except (click.Abort, KeyboardInterrupt):
         sys.exit(130)
+    except BrokenPipeError:  # whoever read the answer has gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(141)
     except click.ClickException as error:
         click.echo(f"sensorfault: {error.format_message()}", err=True)
         sys.exit(2)
@@ -55,3 +61,11 @@ def main() -> None:
             raise
         click.echo(f"sensorfault: {sentence}", err=True)
         sys.exit(2)
+
+
+def _be_interruptible() -> None:
+    """End on SIGTERM as on an interrupt, so that no temporary file stays; print any name in any locale."""
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")

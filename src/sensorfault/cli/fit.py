@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from sensorfault.cli import fitting, limits, options, outputs, reading, show
+from sensorfault.core.files import safe_name
 
 if TYPE_CHECKING:
     from sensorfault.logs import Log
@@ -64,7 +65,7 @@ def command(
         task = bar.add_task(f"fitting {method}", total=None)
         model = fit(table, method, held_out, seed, lambda doing: bar.update(task, description=doing), checkpoint)
         bar.update(task, total=1, completed=1, description=f"fitted {method}")
-    target = out or Path(f"{table.name}.sensorfault")
+    target = out or Path(f"{safe_name(table.name)}.sensorfault")
     save(model, target)
     watched = [c.path for c, w in zip(model.channels, model.watched, strict=True) if w]
     show.say(limits.watches(watched))
@@ -83,7 +84,7 @@ def _compare(log: "Log", out: Path | None, json_path: str | None) -> bool:
         comparison = comparison_of(log)
     except NothingToCompare:
         return False
-    target = out or Path(f"{log.name}.sensorfault")
+    target = out or Path(f"{safe_name(log.name)}.sensorfault")
     write_comparison(comparison, target)
     for sentence in limits.of_comparison(comparison):
         show.say(sentence)

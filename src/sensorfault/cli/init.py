@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from sensorfault.cli import options, show
+from sensorfault.cli import options, outputs, show
 
 
 @click.command("init")
@@ -20,9 +20,10 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
     from sensorfault.core.files import appearing
     from sensorfault.logs import LogError, guess
 
+    target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
+    outputs.check_outputs([target, json_path], [one for one in _logs(log) if one.name != "vehicle.toml"])
     with show.patient(f"reading {log.name}") as tell:
         found = guess(log, tell)
-    target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
     if target.exists() and not force:
         raise LogError(f"{target} is there already; give another --out, or --force to replace it.")
     with appearing(target) as temporary:
@@ -40,3 +41,8 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
         for sensor in found.sensors
     }
     show.write_json(json_path, {"vehicle": str(target), "sensors": listed, "notes": list(found.notes)})
+
+
+def _logs(path: Path) -> list[Path]:
+    """The file; of a folder what it holds, as an old vehicle.toml there may be replaced."""
+    return list(path.iterdir()) if path.is_dir() else [path]

@@ -28,7 +28,12 @@ def _stderr() -> "Console":
 
 def say(sentence: str) -> None:
     """Print one sentence on stderr, so that tables and JSON stay clean."""
-    _stderr().print(sentence, markup=False, highlight=False, soft_wrap=True)
+    _stderr().print(plain_text(sentence), markup=False, highlight=False, soft_wrap=True)
+
+
+def plain_text(text: str) -> str:
+    """A text in which control characters, as a name of a column may have them, are seen and not obeyed."""
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 
 @contextmanager
@@ -88,7 +93,7 @@ def table(
             Text(name), justify="right" if name.endswith(("]", "%")) or name in (*_NUMBERS, *right) else "left"
         )
     for row in rows:
-        drawn.add_row(*(Text(cell) for cell in row))
+        drawn.add_row(*(Text(plain_text(cell)) for cell in row))
     stream = sys.stdout if answer else sys.stderr
     width = None if stream.isatty() else 200
     Console(file=stream, width=width, highlight=False).print(drawn)

@@ -23,6 +23,7 @@ from sensorfault.core.types import (
     Verdict,
 )
 
+ABSURD = 1e30  # no sensor measures more [SI]
 SUBJECTS = ("sensor", "motion")
 
 
@@ -167,7 +168,8 @@ class Monitor(eqx.Module):
         """A value that is not a number is absent; one that came within `hold_s` is held, not absent."""
         arrived = sample.present & jnp.isfinite(sample.value)
         held = (silence >= 0) & (silence <= self.hold_s) & ~sample.born
-        value = jnp.where(arrived, sample.value, state.last)
+        # A number beyond all use stays a number: its square must be one, and it must be seen, not lost.
+        value = jnp.where(arrived, jnp.clip(sample.value, -ABSURD, ABSURD), state.last)
         return sample._replace(value=value, present=arrived | held, fresh=sample.fresh & arrived), arrived
 
     def _judge(self, state: MonitorState, residual: Residual, excluded: Bool[Array, " C"]) -> _Judgement:

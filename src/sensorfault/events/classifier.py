@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MOST = 1e100  # a residual counts no more than this, so that its square is a number
 SURE = 3.0  # standard errors by which a mean or a slope must differ from 0
 
 
@@ -30,7 +31,7 @@ class FaultClassifier:
         for time, measured, residual in measurements:
             if not self.n:
                 self.start_s = time
-            t = time - self.start_s
+            t, residual = time - self.start_s, min(max(residual, -MOST), MOST)
             self.end_s = time
             self.n += 1
             self.repeats += measured == self.last

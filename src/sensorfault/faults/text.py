@@ -64,6 +64,8 @@ def truth_from_json(text: str) -> tuple[Fault, ...]:
         entries = json.loads(text)
     except json.JSONDecodeError as error:
         raise FaultError(f"The truth is not JSON ({error.msg}, line {error.lineno}); write a list of faults.") from None
+    except RecursionError:
+        raise FaultError("The truth is JSON nested without end; write a list of faults.") from None
     if not isinstance(entries, list):
         raise FaultError(f"The truth is a JSON {type(entries).__name__}; write a list of faults.")
     return tuple(_fault(entry, i) for i, entry in enumerate(entries, start=1))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from sensorfault.core.files import no_input
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
@@ -35,7 +36,14 @@ def files_of(path: Where) -> list[Path]:
     for file in files:
         if not file.exists():
             raise LogError(f"{file}: there is no such file or folder; check the path.")
+        if reason := no_input(file):
+            raise LogError(f"{shown(file)} {reason}; give a log file.")
     return files
+
+
+def shown(path: Path) -> str:
+    """A path as text, whatever bytes its name has."""
+    return str(path).encode(errors="surrogateescape").decode(errors="backslashreplace")
 
 
 def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> VehicleFile | None:

@@ -16,6 +16,7 @@ from sensorfault.runtime.compared import Comparison, compare
 from sensorfault.runtime.comparing_live import ComparingLive
 from sensorfault.runtime.detector import Detector
 from sensorfault.runtime.extractor import context_of
+from sensorfault.runtime.live_clock import LiveClock
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import Progress
 from sensorfault.runtime.result import Detection
@@ -65,6 +66,9 @@ class Live:
     `events` are those that have ended; `open()` returns those that are ongoing. A model of the default method compares
     the sensors once a second; between two comparisons its verdicts stand, and scores and residuals are empty.
 
+    It can be pickled, and goes on where it was. After a fork the two processes have each a copy, which do not see each
+    other's samples; do not fork while another thread pushes.
+
     Raises:
         TypeError: something else than a model.
         ValueError: a comparison that was not fitted.
@@ -80,6 +84,7 @@ class Live:
         self._fresh: Bool[np.ndarray, " C"] = np.ones(len(model.inputs), bool)
         self._last: Float[np.ndarray, " C"] = np.full(len(model.inputs), np.nan)
         self._time: float | None = None
+        self._clock = LiveClock()
         self._comparing: ComparingLive | None = None
         if isinstance(model, Comparison):
             if model.learned is None:
@@ -103,7 +108,8 @@ class Live:
         """Judge one sample.
 
         Args:
-            time: [s], greater than that of the sample before.
+            time: [s], greater than that of the sample before. A clock that was set back is followed once it has risen
+                for 2 s; those samples are dropped, and times of events go on from the last one before.
             value: one for each of `model.inputs`, in their order, in SI units; NaN if absent.
             fresh: which values are new measurements, one for all or one each. By default a held sensor's values are new
                 if one of its channels has changed, and all others are new.
@@ -113,7 +119,8 @@ class Live:
             the model judges epochs and this sample ends none, those on the last epoch.
 
         Raises:
-            ValueError: time did not rise, or there are not as many values as the model has inputs.
+            ValueError: time is not finite or did not rise, or there are not as many values as the model has inputs.
+                The sample is dropped, and nothing has changed.
             TypeError: the time is no number, or the values are not numbers.
         """
         row = _row(value)
@@ -122,11 +129,12 @@ class Live:
             raise ValueError(f"live: {len(row)} values for {width} channels; push one for each, NaN if absent.")
         if not isinstance(time, int | float | np.number):
             raise wrong(time, "live: time", "the time of the sample, in seconds")
-        if not time > (-np.inf if self._time is None else self._time):
-            raise ValueError(f"live: time went from {self._time} to {time} s; push samples in order, each once.")
+        if fresh is not None:
+            fresh = np.broadcast_to(np.asarray(fresh, bool), len(row))
+        time = self._clock.take(float(time))
         if fresh is None:
             fresh = self._fresh if not self._held else self._changed(row)
-        before, self._time = self._time, float(time)
+        before, self._time = self._time, time
         gap_s = 0.0 if before is None else self._time - before
         if self._comparing is not None:
             return self._compare(self._comparing, row, np.broadcast_to(fresh, len(row)))

@@ -117,6 +117,7 @@ class Stepper:
     """
 
     def __init__(self, monitor: Monitor, block: Any = ()) -> None:
+        self._made_of = monitor, block
         channels = len(monitor.owner)
         self._state, restore = ravel_pytree(monitor.init())
         extra, restore_block = ravel_pytree(block)
@@ -149,6 +150,9 @@ class Stepper:
         )
         ends = np.cumsum([int(np.prod(one.shape)) for one in result]).tolist()
         self._cuts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True)]
+
+    def __reduce__(self) -> Any:
+        return _stepper, (*self._made_of, np.asarray(self._state))
 
     def push(self, time: float, value: Any, fresh: Any = True, block: Any = (), born: Any = False) -> StepResult:
         """Judge one sample.
@@ -184,3 +188,10 @@ class Stepper:
         )
         verdicts = channel.astype(np.int8), sensor.astype(np.int8), int(sample[0]), int(motion[0])
         return StepResult(*verdicts, score, limit, value, residual, valid > 0, silence)
+
+
+def _stepper(monitor: Monitor, block: Any, state: Float[np.ndarray, " n"]) -> Stepper:
+    """The stepper that was pickled: compiled anew, in the state it was in."""
+    stepper = Stepper(monitor, block)
+    stepper._state = jnp.asarray(state)
+    return stepper

@@ -62,7 +62,10 @@ def save(model: Model | Comparison, path: Path | str) -> None:
     }
     text = json.dumps(header, sort_keys=True)
     with appearing(Path(path)) as temporary:
-        save_file(tensors, temporary, {"sensorfault": text, "digest": _digest(text, tensors)})
+        try:
+            save_file(tensors, temporary, {"sensorfault": text, "digest": _digest(text, tensors)})
+        except SafetensorError as error:
+            raise ModelError(f"{path}: cannot be written ({error}); make room, or write somewhere else.") from None
 
 
 def load(path: Path | str) -> Model | Comparison:
@@ -112,7 +115,7 @@ def load(path: Path | str) -> Model | Comparison:
         return model
     except ModelError:
         raise
-    except (KeyError, IndexError, AttributeError, TypeError, ValueError) as error:
+    except (KeyError, IndexError, AttributeError, TypeError, ValueError, RecursionError, OverflowError) as error:
         raise ModelError(f"{path}: its header does not describe a model ({error}); {refit}.") from None
 
 

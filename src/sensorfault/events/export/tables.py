@@ -33,7 +33,15 @@ def write_jsonl(events: Sequence[Event], log: Log, path: Path, source: Path | No
 
 def write_csv(events: Sequence[Event], log: Log, path: Path, source: Path | None) -> None:
     """With a header; an empty cell where there is no value."""
-    frame(events).write_csv(path)
+    import polars as pl
+
+    # A spreadsheet runs what begins with one of these; an apostrophe makes it a word.
+    table = frame(events)
+    for name in (column.name for column in table if column.dtype == pl.String):
+        words = pl.col(name)
+        odd = words.str.contains(r"^[=+\-@\t\r]")
+        table = table.with_columns(pl.when(odd).then("'" + words).otherwise(words).alias(name))
+    table.write_csv(path)
 
 
 def write_parquet(events: Sequence[Event], log: Log, path: Path, source: Path | None) -> None:
