@@ -53,6 +53,10 @@ class Field:
 
 def fields(kind: str = "", watch: bool = True, missing: float | None = None, **columns: str) -> tuple[Field, ...]:
     """`channel="column unit"`, the unit left out where it has none; several columns: `"one|other unit"`."""
+    return _fields(kind, watch, missing, columns)
+
+
+def _fields(kind: str, watch: bool, missing: float | None, columns: dict[str, str]) -> tuple[Field, ...]:
     return tuple(
         Field(channel, column, unit, kind, watch, missing=missing)
         for channel, text in columns.items()
@@ -63,9 +67,11 @@ def fields(kind: str = "", watch: bool = True, missing: float | None = None, **c
 
 def quality(missing: float | None = None, **columns: str) -> tuple[Field, ...]:
     """The same of what a sensor says of itself."""
-    return fields("quality", False, missing, **columns)
+    return _fields("quality", False, missing, columns)
 
 
 def xyz(column: str, unit: str, marks: str = "xyz", kind: str = "") -> tuple[Field, ...]:
     """Three axes, whose columns differ by a mark."""
-    return fields(kind, **{axis: f"{column.format(mark)} {unit}" for axis, mark in zip("xyz", marks, strict=True)})
+    return _fields(
+        kind, True, None, {axis: f"{column.format(mark)} {unit}" for axis, mark in zip("xyz", marks, strict=True)}
+    )
