@@ -81,6 +81,7 @@ def new_firmware() -> dict[str, tuple[str, float, list[Row]]]:
         "OF": ("Qual,flowX,flowY", 10, [lambda t: (200, RANDOM.normal(1), RANDOM.normal(2))]),
         "CTUN": ("ThI,ThO,BAlt", 10, [lambda t: (0.5, 0.3 + 0.01 * t, t)]),
         "RCOU": ("C1,C2,C3", 10, [lambda t: (1500, 1400, 0)]),
+        "ESC": ("Instance,RPM,Curr", 10, [lambda t, i=i: (i, 6000, 5 + i) for i in range(4)]),
         "MODE": ("Mode,ModeNum,Rsn", 0, []),
         "EV": ("Id", 0, []),
     }
@@ -106,6 +107,8 @@ def test_every_device_of_a_new_firmware(tmp_path: Path) -> None:
     assert set(news(log, "gnss2_health.eph")) == {1.5}
     assert set(news(log, "estimator.magnetometer_ratio")) == {0.3}
     assert news(log, "optical_flow.y").mean() == pytest.approx(2, abs=0.5)
+    assert set(news(log, "motor4.current")) == {8}
+    assert news(log, "motor.speed")[0] == pytest.approx(6000 * 2 * np.pi / 60)
     assert {channel.path for channel in log.channels if channel.sensor == "motors"} == {
         "motors.output1",
         "motors.output2",

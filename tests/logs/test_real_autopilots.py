@@ -69,8 +69,8 @@ def test_a_silent_receiver_says_that_it_has_no_fix(real_data: Path) -> None:
 def test_states_of_a_copter(real_data: Path) -> None:
     log = read(first(real_data / "healthy" / "quad_v413_goodprop"))
     time, armed = news(log, "armed.armed")
-    assert time[0] < 5
-    assert armed[0] == 1
+    assert armed.tolist() == [0]  # the log begins when the copter is armed
+    assert time[0] > 80
     time, landed = news(log, "landed.landed")
     assert landed.tolist()[0] in (0, 1)
     assert 0 in landed

@@ -1,6 +1,6 @@
 """ArduPilot's log messages (its LogStructure.h, and those of old versions), in binary and text logs."""
 
-from sensorfault.logs.guess.autopilots.fields import Field, fields, quality, xyz
+from sensorfault.logs.guess.autopilots.fields import Field, fields, motor, quality, xyz
 from sensorfault.logs.guess.autopilots.stock import Device, Role, Stock, first_of, state
 
 _PLANE, _SPACE = ("Status >= 2",), ("Status >= 3",)  # 0 no receiver, 1 no fix, 2 in the plane, 3 in space
@@ -49,6 +49,7 @@ _ATTITUDE = (
     *fields("estimate", watch=False, yaw="Yaw deg"),
 )
 _VIBRATION = quality(vibration_x="VibeX m/s^2", vibration_y="VibeY m/s^2", vibration_z="VibeZ m/s^2")
+_MOTOR = motor("Curr A", "RPM rpm", "Temp degC")
 _OUTPUTS = tuple(
     Field(f"output{i}", name.format(i), kind="context", used=True) for name in ("C{}", "Ch{}") for i in range(1, 9)
 )
@@ -116,5 +117,6 @@ ARDUPILOT = Stock(
         state("mode", ("MODE", "ModeNum"), ("MODE", "Mode")),
         state("throttle", ("CTUN", "ThO"), ("CTUN", "ThrOut"), ("CURR", "ThrOut")),
         first_of("motors", _OUTPUTS, "RCOU", single=True),
+        Role("motor{}", (_each(_MOTOR, "ESC"), _each(_MOTOR, *(f"ESC{i}" for i in range(1, 9))))),
     ),
 )  # fmt: skip

@@ -70,6 +70,16 @@ def quality(missing: float | None = None, **columns: str) -> tuple[Field, ...]:
     return _fields("quality", False, missing, columns)
 
 
+def motor(current: str, speed: str, temperature: str) -> tuple[Field, ...]:
+    """What a speed controller tells of its motor: columns with their units."""
+    columns = {"current": current, "speed": speed, "temperature": temperature}
+    return tuple(
+        Field(channel, column, unit, "context", used=True)
+        for channel, text in columns.items()
+        for column, _, unit in (text.partition(" "),)
+    )
+
+
 def xyz(column: str, unit: str, marks: str = "xyz", kind: str = "") -> tuple[Field, ...]:
     """Three axes, whose columns differ by a mark."""
     return _fields(

@@ -1,6 +1,6 @@
 """MAVLink's messages: common.xml and ardupilotmega.xml."""
 
-from sensorfault.logs.guess.autopilots.fields import Field, fields, quality, xyz
+from sensorfault.logs.guess.autopilots.fields import Field, fields, motor, quality, xyz
 from sensorfault.logs.guess.autopilots.stock import Device, Role, Stock, first_of, state
 
 _PLANE, _SPACE = ("fix_type >= 2",), ("fix_type >= 3",)
@@ -46,6 +46,11 @@ _LOCAL = fields("estimate", False, x="x m", y="y m", z="z m", north="vx m/s", ea
 _GLOBAL = fields("estimate", False, latitude="lat 1e-7deg", longitude="lon 1e-7deg", altitude="alt mm")
 _RANGE = (*fields(range="current_distance cm"), *fields(range="distance m"), *quality(quality="signal_quality"))
 _OUTPUTS = tuple(Field(f"output{i}", f"servo{i}_raw", kind="context", used=True) for i in range(1, 9))
+_MOTORS = tuple(
+    Device(table, motor(f"current[{i}] cA", f"rpm[{i}] rpm", f"temperature[{i}] degC"), number=first + i)
+    for table, first in (("ESC_TELEMETRY_1_TO_4", 1), ("ESC_TELEMETRY_5_TO_8", 5))
+    for i in range(4)
+)
 _FLOW = (
     Field("x", "rate_of_integrated_x", "rad/s"),
     Field("y", "rate_of_integrated_y", "rad/s"),
@@ -103,5 +108,6 @@ MAVLINK = Stock(
         state("mode", ("HEARTBEAT", "custom_mode")),
         state("throttle", ("VFR_HUD", "throttle")),
         first_of("motors", _OUTPUTS, "SERVO_OUTPUT_RAW", single=True),
+        Role("motor{}", (_MOTORS,), single=True),
     ),
 )  # fmt: skip

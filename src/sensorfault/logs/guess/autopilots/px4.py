@@ -1,6 +1,6 @@
 """PX4's topics: its uORB message definitions (msg/*.msg) and their comments, of old and new versions."""
 
-from sensorfault.logs.guess.autopilots.fields import Field, fields, quality, xyz
+from sensorfault.logs.guess.autopilots.fields import Field, fields, motor, quality, xyz
 from sensorfault.logs.guess.autopilots.stock import Device, Role, Stock, first_of, state
 from sensorfault.logs.readers.attitude import ANGLES
 
@@ -20,6 +20,12 @@ _OUTPUTS = tuple(
     Field(f"output{i + 1}", f"{name}[{i}]", kind="context", used=True)
     for name in ("control", "output")
     for i in range(8)
+)
+_MOTORS = tuple(
+    Device(
+        "esc_status", motor(f"{one}.esc_current A", f"{one}.esc_rpm rpm", f"{one}.esc_temperature degC"), number=i + 1
+    )
+    for i, one in enumerate(f"esc[{i}]" for i in range(8))
 )
 _PLACE = (("latitude", "latitude_deg", "deg"), ("latitude", "lat", "1e-7deg"), ("longitude", "longitude_deg", "deg"),
           ("longitude", "lon", "1e-7deg"))  # fmt: skip
@@ -155,5 +161,6 @@ PX4 = Stock(
         state("mode", ("vehicle_status", "nav_state")),
         state("throttle", ("actuator_controls_0", "control[3]"), ("vehicle_thrust_setpoint", "xyz[2]")),
         first_of("motors", _OUTPUTS, "actuator_motors", "actuator_outputs", single=True),
+        Role("motor{}", (_MOTORS,), single=True),
     ),
 )  # fmt: skip
