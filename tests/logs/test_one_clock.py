@@ -100,3 +100,48 @@ def test_files_by_name_in_any_order(tmp_path: Path) -> None:
     np.testing.assert_array_equal(folder.value, files.value)
     assert folder.sensors == files.sensors
     assert [sensor.period_s for sensor in files.sensors] == pytest.approx([1.0, 0.1])
+
+
+TWO = """
+[file.imu]
+path = "imu.csv"
+time = "t"
+[file.gnss]
+path = "gnss.csv"
+time = "t"
+[sensor.other]
+file = "gnss"
+[sensor.other.channel]
+v = {{ column = "v", kind = "{kind}" }}
+[sensor.imu]
+file = "imu"
+[sensor.imu.channel]
+a = {{ column = "a", unit = "g" }}
+"""
+
+
+def two(folder: Path, kind: str, imu: np.ndarray, other: np.ndarray) -> Log:
+    put(folder, "imu.csv", "a", imu, np.sin(imu))
+    put(folder, "gnss.csv", "v", other, 36 + other)
+    return read(folder, VehicleFile.parse(TWO.format(kind=kind)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "hz", "ticks"), [("estimate", 105, 1000), ("estimate", 200, 2000), ("context", 200, 1000)]
+)
+def test_ticks_are_those_of_a_sensor(tmp_path: Path, kind: str, hz: int, ticks: int) -> None:
+    """An estimate a little faster than the sensors, or anything that is no measurement, must not cost their rows."""
+    log = two(tmp_path, kind, np.arange(1000) / 100, np.arange(10 * hz) / hz)
+    assert len(log) == ticks
+    assert log.fresh[:, log.index("imu.a")].sum() == 1000
+
+
+def test_a_state_from_before_the_first_row_holds_at_it(tmp_path: Path) -> None:
+    times = np.array([1.0, 7.0, 13.0])
+    log = two(tmp_path, "context", 10 + np.arange(1000) / 100, times)
+    state = log.index("other.v")
+    assert log.value[0, state] == 43  # of 7 s
+    assert log.time[log.fresh[:, state]].tolist() == [0.0, 3.0]
+    assert not any("left out" in note for note in log.notes)
+    measured = two(tmp_path, "", 10 + np.arange(1000) / 100, times)
+    assert any("left out" in note for note in measured.notes)

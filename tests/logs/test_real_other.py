@@ -43,15 +43,15 @@ def test_fixed_wing_topics(real_data: Path) -> None:
     folder = real_data / "uav" / "px4_fw_proto_flt09"
     found = sane(folder)
     assert found["gyro"] == {"x [rad/s]", "y [rad/s]", "z [rad/s]"}
-    assert found["vehicle_gps_position_gnss"] >= {
+    assert found["gnss"] >= {
         "latitude [1e-7deg]",
         "longitude [1e-7deg]",
         "speed [m/s]",
         "course [rad]",
+        "altitude [mm]",
     }
-    assert found["vehicle_gps_position_height"] == {"altitude [mm]"}
     log = read(folder)
-    latitude = np.degrees(log.value[:, log.index("vehicle_gps_position_gnss.latitude")])
+    latitude = np.degrees(log.value[:, log.index("gnss.latitude")])
     assert np.nanmedian(latitude) == pytest.approx(45.22, abs=0.05)
     assert log.duration_s == pytest.approx(530, abs=2)
 

@@ -45,8 +45,8 @@ def test_a_stock_log_needs_no_hand(tmp_path: Path) -> None:
     assert log.duration_s == pytest.approx(9.98)
     roll = log.index("attitude.roll")
     np.testing.assert_allclose(log.value[:, roll], 0.2 * np.sin(np.arange(500) / 50), atol=1e-6)
-    assert log.value[0, log.index("vehicle_gps_position_gnss.altitude")] == 500
-    assert log.value[0, log.index("vehicle_gps_position_gnss.latitude")] == pytest.approx(np.deg2rad(47))
+    assert log.value[0, log.index("gnss.altitude")] == 500
+    assert log.value[0, log.index("gnss.latitude")] == pytest.approx(np.deg2rad(47))
     assert log.value[log.fresh[:, log.index("barometer.altitude")]].shape[0] == 100
     assert log.value[:, log.index("accelerometer.z")].mean() == pytest.approx(-9.8, abs=0.05)
 
@@ -96,7 +96,16 @@ def test_the_sample_of_pyulog(real_data: Path) -> None:
     log = read(real_data / "uav" / "pyulog_sample" / "sample.ulg")
     assert log.duration_s == pytest.approx(68.9, abs=0.1)
     assert log.period_s == pytest.approx(0.004, abs=2e-4)
-    assert [sensor.name for sensor in log.sensors] == ["gyro", "accelerometer", "magnetometer", "attitude"]
+    measured = [sensor.name for sensor in log.measurements().sensors]
+    assert measured == ["gyro", "accelerometer", "magnetometer", "attitude"]
+    assert {sensor.name for sensor in log.sensors} - set(measured) == {
+        "estimated_local_position",
+        "throttle",
+        "estimator",
+        "motors",
+        "armed",
+        "mode",
+    }
     assert np.nanmean(log.value[:, log.index("accelerometer.z")]) == pytest.approx(-9.62, abs=0.05)
     attitude = log.value[log.fresh[:, log.index("attitude.roll")]]
     assert len(attitude) == 6460

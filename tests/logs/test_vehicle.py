@@ -1,7 +1,9 @@
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -11,6 +13,7 @@ from sensorfault.logs import Log, LogError, VehicleFile, read, write
 from sensorfault.logs import vehicle as vehicle_module
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.parts import read_parts
+from sensorfault.logs.table import KINDS, SAID
 from sensorfault.logs.units import UNITS
 
 GOOD = """
@@ -35,8 +38,10 @@ channels = st.builds(
     st.none() | finite,
     st.none() | names,
     st.booleans(),
-    why=reasons,
-)
+    st.none() | st.just("fix_type >= 2"),
+    st.sampled_from(KINDS),
+    reasons,
+).map(lambda one: replace(one, watch=False) if one.kind in SAID else one)
 
 
 @st.composite
@@ -158,7 +163,9 @@ def test_the_description_of_the_format_is_of_the_format() -> None:
     vehicle = VehicleFile.parse(example)
     assert VehicleFile.parse(vehicle.to_toml()) == vehicle
     assert vehicle.sensors[0].channels[3].epoch == "far_time"
-    assert [channel.watch for channel in vehicle.sensors[0].channels] == [True, False, True, True]
+    assert [channel.watch for channel in vehicle.sensors[0].channels] == [True, False, True, True, True, False]
+    assert vehicle.sensors[0].channels[4].valid == "fix_type >= 2"
+    assert vehicle.sensors[0].channels[5].kind == "quality"
 
 
 def test_a_sensor_says_watch_for_all_of_its_channels() -> None:
@@ -181,3 +188,35 @@ def test_a_log_that_another_logs_file_describes_has_its_own_name(tmp_path: Path)
     parts: list[Log] = []
     read_parts(tmp_path / "second.csv", parts.append, vehicle)
     assert parts[0].name == "second"
+
+
+VALID = GOOD + 'y = { column = "wy", valid = "fix >= 2" }\nfix = { column = "fix", kind = "quality" }\n'
+
+
+def test_no_value_where_its_condition_does_not_hold(tmp_path: Path) -> None:
+    vehicle = VehicleFile.parse(VALID)
+    assert VehicleFile.parse(vehicle.to_toml()) == vehicle
+    rows = "".join(f"{100 * t},{t},{t + 0.5},{'' if t == 5 else t % 4}\n" for t in range(20))
+    (tmp_path / "log.csv").write_text(f"t,wx,wy,fix\n{rows}")
+    log = read(tmp_path / "log.csv", vehicle)
+    there = np.array([t % 4 >= 2 and t != 5 for t in range(20)])
+    np.testing.assert_array_equal(np.isfinite(log.value[:, log.index("gyro.y")]), there)
+    np.testing.assert_array_equal(log.fresh[:, log.index("gyro.y")], there)
+    assert np.isfinite(log.value[:, log.index("gyro.x")]).all()
+    assert log.fresh[:, log.index("gyro.fix")].sum() == 19
+    again = read(tmp_path / "copy.csv", write(log, tmp_path / "copy.csv"))
+    assert again.channels == log.channels
+    assert [channel.path for channel in log.measurements().channels] == ["gyro.x", "gyro.y"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ('valid = "fix"', "valid = 'fix' is no condition; write one like 'fix_type >= 2'"),
+        ('valid = "fix >= two"', "is no condition"),
+        ('kind = "state"', "kind = 'state' is unknown; take one of estimate, quality, context"),
+    ],
+)
+def test_a_wrong_condition_or_kind_is_refused(wrong: str, said: str) -> None:
+    with pytest.raises(LogError, match=re.escape(said)):
+        VehicleFile.parse(GOOD + f'y = {{ column = "wy", {wrong} }}\n')

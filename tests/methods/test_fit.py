@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import fitted
-from sensorfault.logs.table import Log, LogError
+from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.methods.catalog import DEFAULT, METHODS
 from sensorfault.methods.common.watch import watchable
 from sensorfault.methods.fit import fit
@@ -221,3 +221,25 @@ def test_conditioning_wants_rows_in_a_row() -> None:
     assert made.watched[1]
     late[::3, :6] = np.nan
     assert "no channel to watch" in sentence(fitted.shifted(log(), late), method="relative-conditioning")
+
+
+def test_a_method_takes_measurements_and_what_may_be_judged() -> None:
+    whole = log()
+    said = (
+        Channel("fix_type", "gnss", watch=False, kind="quality"),
+        Channel("mode", "mode", watch=False, kind="context"),
+        Channel("x", "estimated_local_position", "m", watch=False, kind="estimate"),
+    )
+    more = np.tile(np.arange(len(whole), dtype=float)[:, None], (1, len(said)))
+    sensors = (*whole.sensors, Sensor("mode", 1.0), Sensor("estimated_local_position", 0.1))
+    wide = replace(
+        whole,
+        value=np.concatenate([whole.value, more], axis=1),
+        fresh=np.concatenate([whole.fresh, np.ones(more.shape, bool)], axis=1),
+        channels=(*whole.channels, *said),
+        sensors=sensors,
+    )
+    model = fit(wide, "pca")
+    assert model.channels == whole.channels
+    assert numbers(model) == numbers(fit(whole, "pca"))
+    assert not detect(model, wide).events

@@ -1,5 +1,6 @@
 """The default method names what lies, and nobody on healthy drives, however the inertial unit is mounted."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from relations import drives
 from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
-from sensorfault.logs.table import Log, LogError
+from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.relations.axes import ROTATIONS
 from sensorfault.runtime.compared import Comparison, compare, comparison_of
 from sensorfault.runtime.result import Detection
@@ -144,3 +145,34 @@ def test_what_nothing_contradicts_is_unknown_not_ok() -> None:
 def test_a_log_too_short_to_judge_is_refused() -> None:
     with pytest.raises(LogError, match=r"none of its sensors can be checked .*too short"):
         compare(copter().between(end_s=3.0))
+
+
+def test_what_is_said_and_samples_of_a_second_unit_are_no_witnesses() -> None:
+    log = copter()
+    said = (
+        *(Channel(axis, "gyro2", "rad/s") for axis in "xyz"),
+        Channel("fix_type", "gnss", watch=False, kind="quality"),
+        Channel("latitude", "filter", "rad", watch=False, kind="context"),
+        Channel("longitude", "filter", "rad", watch=False, kind="context"),
+        *(Channel(axis, "magnetometer2_uncalibrated", "T") for axis in "xyz"),
+    )
+    value = np.full((len(log), len(said)), np.nan)
+    value[::25] = 3 + np.random.default_rng(4).normal(size=value[::25].shape)
+    more = (Sensor("gyro2", 0.5), Sensor("filter", 0.5), Sensor("magnetometer2_uncalibrated", 0.5))
+    wide = replace(
+        log,
+        value=np.concatenate([log.value, value], axis=1),
+        fresh=np.concatenate([log.fresh, np.isfinite(value)], axis=1),
+        channels=(*log.channels, *said),
+        sensors=(*log.sensors, *more),
+    )
+    found, before = compare(wide, fitted_copter()), compare(log, fitted_copter())
+    assert found.events == before.events == ()
+    assert found.coverage is not None
+    assert before.coverage is not None
+    assert found.coverage.compared == before.coverage.compared
+    assert set(found.coverage.not_compared) - set(before.coverage.not_compared) == {
+        "gyro2",
+        "magnetometer2_uncalibrated",
+    }
+    assert not found.watched[[c.path for c in wide.channels].index("gnss.fix_type")]

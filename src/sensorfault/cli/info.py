@@ -34,7 +34,7 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
     said = reading.read_in(reading.in_parts(log, by_parts), log, vehicle, summing.take)
     table, sensors = summing.first, summing.sensors
     assert table is not None  # a log without a row is an error
-    applies, lacking, without = _methods(table)
+    applies, lacking, without = _methods(table.measurements())
     answer = json_path != "-"
     show.table(f"Sensors of {table.name}", _COLUMNS, [_row(one) for one in sensors], answer, right=("gaps", "at"))
     rows = [(name, "yes" + (f", without {', '.join(without[name])}" if without[name] else "")) for name in applies]

@@ -5,7 +5,11 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class ChannelEntry:
-    """One column that is a channel. `missing`: the number that means no value. `watch`: whether it may be judged."""
+    """One column that is a channel. `missing`: the number that means no value. `watch`: whether it may be judged.
+
+    `valid`: a condition on another column, as `fix_type >= 2`; where it does not hold there is no value. `kind`: one
+    of KINDS.
+    """
 
     name: str
     column: str
@@ -13,6 +17,8 @@ class ChannelEntry:
     missing: float | None = None
     epoch: str | None = None
     watch: bool = True
+    valid: str | None = None
+    kind: str = ""
     why: str = field(default="", compare=False)
 
 

@@ -13,8 +13,8 @@ from sensorfault.logs.one_clock import Piece, put_on_one_clock
 from sensorfault.logs.readers.source import Source, Tables, joined
 from sensorfault.logs.reading import log_of
 from sensorfault.logs.reading_notes import ReadingNotes
-from sensorfault.logs.stream import read_stream
-from sensorfault.logs.table import Channel, Log, LogError, Sensor
+from sensorfault.logs.stream import channel_of, read_stream
+from sensorfault.logs.table import Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 
 MARGIN_S = 5.0  # the last seconds of a part go to the next part: rows of a slow topic may still belong to them
@@ -102,7 +102,7 @@ class Joining:
         if not streams:
             return None
         present = replace(self.known, sensors=tuple(s for s in self.known.sensors if s.file in there))
-        fastest = min(able or streams, key=lambda one: one.period_s * (_STAYS if one.name == self.ticks else 1))
+        fastest = min(able or streams, key=lambda one: one.pace_s * (_STAYS if one.name == self.ticks else 1))
         self.ticks = fastest.name
         begin_s = fastest.zero_s if self.begin_s is None else self.begin_s
         clock = put_on_one_clock(streams, piece=Piece(fastest, begin_s, first=self.begin_s is None, last=last))
@@ -129,7 +129,7 @@ def _recent(both: Source, now: Source | None) -> Source:
 
 def _widened(log: Log, known: VehicleFile) -> Log:
     """The log with all channels of the vehicle; missing ones have no values."""
-    channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in known.sensors for c in s.channels)
+    channels = tuple(channel_of(c, s) for s in known.sensors for c in s.channels)
     if channels == log.channels:
         return log
     value, fresh = np.full((len(log), len(channels)), np.nan), np.zeros((len(log), len(channels)), bool)

@@ -48,21 +48,21 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: 
         (only,) = streams
         return OneClock(only.zero_s, only.time, only.value, only.fresh)
     if piece is None:
-        fastest = min(streams, key=lambda stream: stream.period_s)
+        fastest = min(streams, key=lambda stream: stream.pace_s)
         piece = Piece(fastest, fastest.zero_s, first=True, last=True)
     fastest = piece.ticks
     at, notes = _filled(piece) if len(streams) > 1 else (fastest.time, [])
-    values, marks = [], []
+    shape = (len(at), sum(stream.value.shape[1] for stream in streams))
+    value, fresh, begin = np.full(shape, np.nan), np.zeros(shape, bool), 0
     for stream in streams:
         time = stream.time + (stream.zero_s - fastest.zero_s)
+        own = slice(begin, begin + stream.value.shape[1])
         if resample == "linear":
-            value, fresh = _interpolated(at, time, stream)
+            value[:, own], fresh[:, own] = _interpolated(at, time, stream)
         else:
-            value, fresh, note = _placed(at, time, stream, piece)
-            notes += note
-        values.append(value)
-        marks.append(fresh)
-    return OneClock(fastest.zero_s, at, np.concatenate(values, axis=1), np.concatenate(marks, axis=1), tuple(notes))
+            notes += _place(at, time, stream, piece, value[:, own], fresh[:, own])
+        begin = own.stop
+    return OneClock(fastest.zero_s, at, value, fresh, tuple(notes))
 
 
 def _filled(piece: Piece) -> tuple[np.ndarray, list[str]]:
@@ -86,24 +86,27 @@ def _filled(piece: Piece) -> tuple[np.ndarray, list[str]]:
     return np.sort(np.concatenate([time, *new])), notes
 
 
-def _placed(
-    ticks: np.ndarray, time: np.ndarray, stream: Stream, piece: Piece
-) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Each row on the first tick at or after its time."""
-    shape = (len(ticks), stream.value.shape[1])
-    value, fresh = np.full(shape, np.nan), np.zeros(shape, bool)
+def _place(
+    ticks: np.ndarray, time: np.ndarray, stream: Stream, piece: Piece, value: np.ndarray, fresh: np.ndarray
+) -> list[str]:
+    """Put each row on the first tick at or after its time; `value` and `fresh` are empty before."""
     # Rows of the fastest stream lie exactly on ticks; a row long before the first tick is not new at it.
     tick = np.searchsorted(ticks, time - SAME_S, side="left")
     early, late = time <= ticks[0] - (stream.period_s if piece.first else SAME_S), tick == len(ticks)
+    early &= stream.measured or not piece.first  # what is said of the vehicle holds until something else is
     rows = np.flatnonzero(~(early | late))
     outside = int((early & piece.first | late & piece.last).sum())
     last = np.append(tick[rows][1:] != tick[rows][:-1], True) if len(rows) else np.zeros(0, bool)
     later = rows[last]
     value[tick[later]], fresh[tick[later]] = stream.value[later], stream.fresh[later]
     # A row that was dropped for a later one on the same tick still made the tick new.
-    np.logical_or.at(fresh, tick[rows], stream.fresh[rows])
-    fresh &= np.isfinite(value)
-    notes = []
+    dropped = rows[~last]
+    at = tick[dropped]
+    np.logical_or.at(fresh, at, stream.fresh[dropped])
+    fresh[at] &= np.isfinite(value[at])
+    notes: list[str] = []
+    if not stream.measured:
+        return notes
     if outside:
         notes.append(
             f"{stream.name}: {counted(outside, 'row')} before the first or after the last row of {piece.ticks.name}, "
@@ -112,7 +115,7 @@ def _placed(
     if len(rows) > len(later):
         lost = counted(len(rows) - len(later), "row")
         notes.append(f"{stream.name}: {lost} dropped: a later row has the same time step.")
-    return value, fresh, notes
+    return notes
 
 
 def _interpolated(ticks: np.ndarray, time: np.ndarray, stream: Stream) -> tuple[np.ndarray, np.ndarray]:

@@ -11,10 +11,12 @@ from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import STALE, fresh_rows, looks_held, share_old, share_repeated, stale, usual_period_s
 from sensorfault.logs.readers.rtklib import read_tag
 from sensorfault.logs.readers.source import Source
-from sensorfault.logs.table import Channel, LogError, Sensor
+from sensorfault.logs.table import SAID, Channel, LogError, Sensor
 from sensorfault.logs.units import to_si
+from sensorfault.logs.validity import Validity
 
 _NAMED = 6  # columns listed in one sentence
+_ESTIMATE = 1.25  # ticks are those of an estimate only if it is faster than every sensor by this factor
 _LOOK_ROWS = 100_000  # share of repeated rows that suggests a hold
 
 
@@ -23,6 +25,8 @@ class Stream:
     """T rows of one file, C channels of its sensors.
 
     `zero_s`: the reading of the common clock at time 0 [s]. `period_s`: the usual time between two rows [s].
+    `measured`: whether a channel of it is a measurement or an estimate.
+    `pace_s`: the same, but longer where no tick of a log should be: where only an estimator or a state speaks.
     """
 
     name: str
@@ -34,6 +38,12 @@ class Stream:
     channels: tuple[Channel, ...]
     sensors: tuple[Sensor, ...]
     notes: tuple[str, ...]
+    measured: bool = True
+
+    @property
+    def pace_s(self) -> float:
+        kinds = {channel.kind for channel in self.channels}
+        return self.period_s * (1.0 if "" in kinds else _ESTIMATE if self.measured else np.inf)
 
 
 def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...]) -> Stream:
@@ -50,7 +60,8 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         )
     clock = read_clock(source, column, unit)
     zero, rate = clock.zero_s + file.offset_s, 1.0
-    notes = [*source.notes, *clock.notes]
+    measured = any(channel.kind not in SAID for sensor in sensors for channel in sensor.channels)
+    notes = [*source.notes, *(clock.notes if measured else ())]
     if file.tag is not None:
         counter = clock.zero_s + clock.time
         start, rate = read_tag(source.path.parent / file.tag, source.path, counter, clock.rows + source.first_line)
@@ -61,7 +72,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
         )
     time = clock.time if rate == 1.0 else clock.time * rate
     gaps = _Gaps(source)
-    channels = tuple(Channel(c.name, s.name, c.unit, c.watch) for s in sensors for c in s.channels)
+    channels = tuple(channel_of(c, s) for s in sensors for c in s.channels)
     value = np.empty((len(time), len(channels)))
     fresh = np.empty(value.shape, bool)
     described, at = [], 0
@@ -76,12 +87,18 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
             value[late, own] = np.nan
             notes += _stale_note(source.name, sensor.name, late, period)
         described.append(Sensor(sensor.name, period, sensor.held))
-        notes += _held_note(source.name, sensor, value[:, own], fresh[:, own], period)
+        if any(channel.kind not in SAID for channel in sensor.channels):
+            notes += _held_note(source.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
     notes += gaps.notes()
     return Stream(
-        source.name, zero, clock.period_s * rate, time, value, fresh, channels, tuple(described), tuple(notes)
+        source.name, zero, clock.period_s * rate, time, value, fresh, channels, tuple(described), tuple(notes), measured
     )
+
+
+def channel_of(channel: ChannelEntry, sensor: SensorEntry) -> Channel:
+    """The channel that an entry describes."""
+    return Channel(channel.name, sensor.name, channel.unit, channel.watch, channel.kind)
 
 
 class _Gaps:
@@ -110,13 +127,17 @@ def _channel(source: Source, channel: ChannelEntry, clock: Clock, gaps: _Gaps, s
     """One column in SI on the kept rows, NaN without a value; `silent`: it may have no value at all."""
     value = source.column(channel.column).cast(pl.Float64).to_numpy()
     absent = ~np.isfinite(value)
-    if absent.any():
+    said = channel.kind in SAID
+    if absent.any() and not said:
         empty = np.isnan(value)
         gaps.see("are infinite", channel.column, absent & ~empty)
         gaps.see("are empty", channel.column, empty)
     if channel.missing is not None:
         absent |= value == channel.missing
-    if absent.all() and not silent:
+    if channel.valid is not None:
+        condition = Validity.parse(channel.valid, f"{source.path}: column '{channel.column}' valid =")
+        absent |= ~condition.holds(source.column(condition.column).cast(pl.Float64).fill_null(np.nan).to_numpy())
+    elif absent.all() and not (silent or said):
         raise LogError(
             f"{source.path}: column '{channel.column}' holds no value at all; take it out of vehicle.toml, or write "
             "period_s into its sensor if the sensor was silent."

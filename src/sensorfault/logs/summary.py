@@ -9,13 +9,15 @@ from sensorfault.logs.clock import GAP
 from sensorfault.logs.held import any_of
 from sensorfault.logs.table import Log
 
+STEADY = 1.5  # a step up to so many usual ones has no measurement missing in it
 MOST_STEPS = 1 << 20  # the usual step of a sensor is that of so many from the beginning
 
 
 @dataclass(frozen=True)
 class SensorSummary:
-    """One sensor. Rate in new measurements per second; `held`: share of its values that repeat the last one.
+    """One sensor. Rate in new measurements per second while none is missing.
 
+    `held`: share of its values that repeat the last one.
     `gaps`: pauses longer than three usual periods; the longest lasts `longest_gap_s` from `gap_at_s`. `missing`: share
     of the ticks without any value. Unknown numbers are None, as the rate of a sensor with fewer than two measurements.
     """
@@ -71,6 +73,7 @@ class _Sum:
         self._columns = list(first.of(name))
         self._channels = [first.channels[i] for i in self._columns]
         self._rows = self._present = self._measurements = self._gaps = 0
+        self._steady, self._steady_s = 0, 0.0  # steps without a measurement missing, and how long they last together
         self._early: list[Float[np.ndarray, " k"]] = []  # steps before the usual one is known
         self._usual_s: float | None = None
         self._longest_s, self._longest_at_s = 0.0, np.nan
@@ -91,25 +94,28 @@ class _Sum:
             worst = int(np.argmax(steps))
             self._longest_s, self._longest_at_s = float(steps[worst]), float(begin[worst])
         if self._usual_s is not None:
-            self._gaps += self._long(steps, self._usual_s)
+            self._count(steps, self._usual_s)
             return
         self._early.append(steps)
         if self._measurements > MOST_STEPS:
             steps = np.concatenate(self._early)
             self._usual_s = float(np.median(steps))
-            self._gaps, self._early = self._long(steps, self._usual_s), []
+            self._count(steps, self._usual_s)
+            self._early = []
 
     def summary(self) -> SensorSummary:
         early = np.concatenate(self._early) if self._early else np.zeros(0)
-        usual_s = self._usual_s or (float(np.median(early)) if len(early) else 0.0)
-        gaps = self._gaps + self._long(early, usual_s)
+        before = self._gaps, self._steady, self._steady_s
+        self._count(early, self._usual_s or (float(np.median(early)) if len(early) else 0.0))
+        gaps, steady, steady_s = self._gaps, self._steady, self._steady_s
+        self._gaps, self._steady, self._steady_s = before  # more parts may come
         present, rows = self._present, self._rows
         return SensorSummary(
             name=self._name,
             channels=tuple(channel.name for channel in self._channels),
             units=tuple(channel.unit for channel in self._channels),
             measurements=self._measurements,
-            rate_hz=1 / usual_s if usual_s else None,
+            rate_hz=steady / steady_s if steady_s else None,
             gaps=gaps,
             longest_gap_s=self._longest_s if gaps else None,
             gap_at_s=self._longest_at_s if gaps else None,
@@ -117,6 +123,8 @@ class _Sum:
             missing=1 - present / rows if rows else 1.0,
         )
 
-    @staticmethod
-    def _long(steps: Float[np.ndarray, " k"], usual_s: float) -> int:
-        return int((steps > GAP * usual_s).sum())
+    def _count(self, steps: Float[np.ndarray, " k"], usual_s: float) -> None:
+        steady = steps[steps <= STEADY * usual_s]
+        self._gaps += int((steps > GAP * usual_s).sum())
+        self._steady += len(steady)
+        self._steady_s += float(steady.sum())

@@ -23,18 +23,25 @@ class LogError(ValueError):
     """A log, a vehicle file or a model that cannot be used. One sentence: what is wrong, where, and what to do."""
 
 
+KINDS = ("", "estimate", "quality", "context")
+SAID = KINDS[2:]  # what is said beside the measurements: never judged
+
+
 @dataclass(frozen=True)
 class Channel:
     """One number of one sensor.
 
     `unit` is for display; values in a Log are SI. `watch`: whether a method may judge them (a latitude is not a
     stationary signal; only its dropouts are detected).
+    `kind`: "" of a measurement; "estimate" of what an estimator computed from several sensors; "quality" of what a
+    sensor says of itself; "context" of what the vehicle does.
     """
 
     name: str
     sensor: str
     unit: str = ""
     watch: bool = True
+    kind: str = ""
 
     @property
     def path(self) -> str:
@@ -175,6 +182,12 @@ class Log:
             channels=tuple(self.channels[i] for i in columns),
             sensors=tuple(s for s in self.sensors if s.name in kept),
         )
+
+    def measurements(self) -> "Log":
+        """The log without quality and context, and without the estimates of which nothing may be judged."""
+        judged = {c.sensor for c in self.channels if c.watch or not c.kind}
+        kept = [c.path for c in self.channels if c.kind not in SAID and c.sensor in judged]
+        return self if len(kept) == len(self.channels) else self.select(kept)
 
     def frame(self) -> "polars.DataFrame":
         """A table for people: `time_s` and one column `sensor.channel` in the channel's own unit, null where absent.

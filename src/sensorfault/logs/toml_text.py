@@ -3,6 +3,7 @@
 import json
 
 from sensorfault.logs.entries import FileEntry, SensorEntry
+from sensorfault.logs.table import SAID
 
 
 def file_lines(file: FileEntry) -> list[str]:
@@ -30,7 +31,8 @@ def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
         lines.append("held = true")
     if sensor.epoch is not None:
         lines.append(f"epoch = {quote(sensor.epoch)}")
-    blind = not any(channel.watch for channel in sensor.channels)  # said once for all of its channels
+    judged = [channel for channel in sensor.channels if channel.kind not in SAID]
+    blind = bool(judged) and not any(channel.watch for channel in judged)  # said once for all of its channels
     if blind:
         lines.append("watch = false")
     if sensor.period_s is not None:
@@ -40,7 +42,9 @@ def sensor_lines(sensor: SensorEntry, single: bool) -> list[str]:
         cell = f"column = {quote(channel.column)}, unit = {quote(channel.unit)}"
         cell += f", missing = {channel.missing!r}" if channel.missing is not None else ""
         cell += f", epoch = {quote(channel.epoch)}" if channel.epoch is not None else ""
-        cell += "" if channel.watch or blind else ", watch = false"
+        cell += f", valid = {quote(channel.valid)}" if channel.valid is not None else ""
+        cell += f", kind = {quote(channel.kind)}" if channel.kind else ""
+        cell += "" if channel.watch or blind or channel.kind in SAID else ", watch = false"
         lines.append(f"{key_of(channel.name)} = {{ {cell} }}" + remark(channel.why))
     return lines
 

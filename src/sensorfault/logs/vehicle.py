@@ -26,6 +26,8 @@ speed = { column = "speed", unit = "km/h" }
 course = { column = "course", unit = "deg", watch = false }  # this channel alone is not judged
 range = { column = "range", unit = "m", missing = -1 }    # -1 means no value
 far = { column = "far", unit = "m", epoch = "far_time" }  # a channel that arrives at its own times
+latitude = { column = "lat", unit = "deg", valid = "fix_type >= 2" }  # no value where that does not hold
+fix_type = { column = "fix_type", kind = "quality" }      # estimate, quality or context, see the README of logs
 """
 
 import tomllib
@@ -33,10 +35,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
-from sensorfault.logs.table import LogError
+from sensorfault.logs.table import KINDS, SAID, LogError
 from sensorfault.logs.toml_table import TomlTable
 from sensorfault.logs.toml_text import comment, file_lines, quote, sensor_lines
 from sensorfault.logs.units import UNITS, known
+from sensorfault.logs.validity import Validity
 
 TIME_UNITS = ("s", "ms", "us", "ns", "iso8601")
 
@@ -180,7 +183,7 @@ def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> Sensor
 
 def _channel(name: str, table: TomlTable, watch: bool) -> ChannelEntry:
     """`watch`: that of its sensor, unless the channel sets its own."""
-    table.only("column", "unit", "missing", "epoch", "watch")
+    table.only("column", "unit", "missing", "epoch", "watch", "valid", "kind")
     column, unit = table.text("column"), table.text("unit") or ""
     if column is None:
         raise LogError(f'{table.where}: [{table.path}] names no column; write column = "...".')
@@ -188,4 +191,11 @@ def _channel(name: str, table: TomlTable, watch: bool) -> ChannelEntry:
         raise LogError(
             f"{table.where}: [{table.path}] unit = '{unit}' is unknown; take one of {', '.join(filter(None, UNITS))}."
         )
-    return ChannelEntry(name, column, unit, table.number("missing"), table.text("epoch"), table.flag("watch", watch))
+    valid, kind = table.text("valid"), table.text("kind") or ""
+    if valid is not None:
+        Validity.parse(valid, f"{table.where}: [{table.path}] valid =")
+    if kind not in KINDS:
+        listed = ", ".join(filter(None, KINDS))
+        raise LogError(f"{table.where}: [{table.path}] kind = '{kind}' is unknown; take one of {listed}.")
+    watch = table.flag("watch", watch and kind not in SAID)
+    return ChannelEntry(name, column, unit, table.number("missing"), table.text("epoch"), watch, valid, kind)

@@ -81,6 +81,7 @@ def as_table(log: Log, file_name: str | None = None) -> "tuple[polars.DataFrame,
                 log.channels[i].unit,
                 epoch=channel_epoch[i] or None,
                 watch=log.channels[i].watch,
+                kind=log.channels[i].kind,
             )
             for i in columns
         )

@@ -84,6 +84,7 @@ def fit(
             return comparison_of(log)
         except NothingToCompare:
             method = DEFAULT
+    log = log.measurements()
     session = Session(progress, checkpoint) if progress else Session(checkpoint=checkpoint)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s
     session.progress(f"fitting {method}")

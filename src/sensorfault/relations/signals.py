@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.logs.table import Channel, Log
+from sensorfault.logs.table import SAID, Channel, Log
 
 EARTH_M = 6_371_000.0  # mean radius
 XYZ = ("x", "y", "z")
@@ -41,8 +41,11 @@ class Signal:
 
 # An autopilot's estimates are no witnesses: they follow the sensors that they are made of.
 _ESTIMATE = re.compile(
-    r"global_position|local_position|estimat|ekf|filtered|setpoint|odom|nav_?(lat|lon|alt|v)|ref|truth|gt_|ground_?truth|relative"
+    r"global_position|local_position|estimat|ekf|filtered|setpoint|odom|nav_?(lat|lon|alt|v)|ref|truth|gt_|ground_?truth|relative|"
+    r"uncalibrated"  # nor is a device with a zero and axes of its own
 )
+_INERTIAL = frozenset({"gyro", "accelerometer", "yaw_rate"})
+SELDOM_S = 0.2  # an inertial sensor with longer steps was logged as samples, between which anything may happen
 _BAROMETER = re.compile(r"(?<!differential_)(?<!raw_)(?<!filtered_)baro|pressure_height|air_data|static")
 _WHEEL = re.compile(r"wheel|odo")
 _COMPASS = re.compile(r"compass|magnet|hdt|heading")
@@ -55,7 +58,7 @@ def signals_of(log: Log) -> dict[str, Signal]:
     for sensor in log.sensors:
         if _ESTIMATE.search(sensor.name.lower()):
             continue
-        columns = {log.channels[i].name: i for i in log.of(sensor.name)}
+        columns = {log.channels[i].name: i for i in log.of(sensor.name) if log.channels[i].kind not in SAID}
         for role, names in _roles(sensor.name.lower(), columns, log.channels):
             _add(found, log, sensor.name, role, tuple(columns[name] for name in names))
     return _speed_of_whom(found)
@@ -135,6 +138,8 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
     if role.startswith("gnss."):
         new &= _has_fix(log, sensor)
     if new.sum() < 5:
+        return
+    if role in _INERTIAL and np.median(np.diff(log.time[new])) > SELDOM_S:
         return
     value = log.value[np.ix_(new, mine)]
     if role == "barometer" and log.channels[mine[0]].name == "pressure" and not 2e4 < np.median(value) < 1.2e5:

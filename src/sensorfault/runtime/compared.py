@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
-from sensorfault.logs.table import Channel, Log, LogError, Sensor
+from sensorfault.logs.table import SAID, Channel, Log, LogError, Sensor
 from sensorfault.relations.events import METHOD, events_of, sensor_of
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
@@ -194,7 +194,7 @@ def _detection(log: Log, judged: Judged) -> Detection:
     return Detection(
         log=log,
         method=METHOD,
-        watched=tuple(one.sensor in coverage.compared for one in log.channels),
+        watched=tuple(one.sensor in coverage.compared and one.kind not in SAID for one in log.channels),
         channel=channel,
         sensor=sensor,
         sample=sample,
@@ -218,7 +218,7 @@ def _coverage(log: Log, judged: Judged) -> Coverage:
     checked = {s.sensor for s in judged.signals.values() if s.role not in NO_LEVELS} if judged.pieces else set()
     why = next((m.why for m in judged.mountings.values() if m.turn is None), "")
     reasons = {}
-    for sensor in log.sensors:
+    for sensor in log.measurements().sensors:
         if sensor.name in compared:
             continue
         if sensor.name not in roles:

@@ -1,7 +1,7 @@
 """Which columns measure something, and what."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +22,6 @@ _STEADY = 0.15  # relative spread below which three axes have a steady length
 OTHER_TIME = "another time, or bookkeeping of it"
 QUALITY = "quality or state, not a measurement of motion"
 BEACON = frozenset({"range", "position", "depth"})  # what a beacon tells of itself
-NO_SENSOR = "not a measurement, by the documentation of the format"
 
 
 @dataclass(frozen=True)
@@ -35,25 +34,22 @@ class Column:
     device: str = ""  # the sensor, where the name of the column says it
 
 
-def measurements(
-    source: Source, time: str, clock: Clock, fields: Mapping[str, Meaning] | None = None
-) -> tuple[list[Column], list[tuple[str, str]]]:
-    """Columns that measure something, and the others with the reason why not; `fields`: all that may, if known.
+def measurements(source: Source, time: str, clock: Clock) -> tuple[list[Column], list[tuple[str, str]]]:
+    """Columns that measure something, and the others with the reason why not.
 
     Raises:
         LogError: a column of numbers has a cell that is none.
     """
     columns, left_out = [], []
     beacons = beacons_of([read_name(name) for name in source.frame.columns])
-    dotted = fields is None and are_dotted(source.frame.columns)
+    dotted = are_dotted(source.frame.columns)
     for name in source.frame.columns:
         if name == time:
             continue
         device = device_of(name) if dotted else ""
-        meaning = _meaning(source, name, fields) if not device else meaning_of(name)
-        if meaning is None:
-            left_out.append((name, NO_SENSOR))
-        elif meaning.kind == "time":
+        own = source.units.get(name, "")
+        meaning = meaning_of(name) if device else read_name(name, own, source.frame.columns)
+        if meaning.kind == "time":
             left_out.append((name, OTHER_TIME))
         elif meaning.kind == "quality":
             left_out.append((name, QUALITY))
@@ -74,12 +70,6 @@ def measurements(
                 columns.append(column)
     headerless = bool(columns) and all(re.fullmatch(r"c\d+", column.name) for column in columns)
     return _by_value(columns) if headerless else columns, left_out
-
-
-def _meaning(source: Source, name: str, fields: Mapping[str, Meaning] | None) -> Meaning | None:
-    if fields is not None:
-        return fields.get(name)
-    return read_name(name, source.units.get(name, ""), source.frame.columns)
 
 
 def beacons_of(meanings: Iterable[Meaning]) -> set[str]:

@@ -4,10 +4,9 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from sensorfault.logs.guess.stock import PX4
+from sensorfault.logs.guess.autopilots import PX4
 
-_SURE = "sensor_combined"
-_TOPICS = sorted({name for part in PX4.parts for name, _ in part}, key=len, reverse=True)
+_TOPICS = sorted(PX4.tables, key=len, reverse=True)
 _NAME = re.compile(rf"(?:^|_)(?P<topic>{'|'.join(_TOPICS)})_(?P<instance>\d+)$")
 
 
@@ -19,4 +18,4 @@ def topics_of(files: Iterable[Path]) -> dict[str, Path]:
         if named:
             instance = int(named["instance"])
             found[named["topic"] + (f"[{instance}]" if instance else "")] = file
-    return found if _SURE in found else {}
+    return found if PX4.tells & found.keys() and len(found) > 1 else {}

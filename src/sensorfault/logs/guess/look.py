@@ -1,21 +1,21 @@
 """What one file of a log holds: which of its tables are sensors, and what."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import FileEntry, SensorEntry
+from sensorfault.logs.guess.autopilots import PX4, Stock, recognised
 from sensorfault.logs.guess.columns import measurements
 from sensorfault.logs.guess.naming import stem_of
 from sensorfault.logs.guess.sensors import guess_sensors
-from sensorfault.logs.guess.stock import PX4, Fields, recognised
 from sensorfault.logs.guess.time import guess_time
 from sensorfault.logs.readers.beginning import is_long, read_beginning
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Source, Tables
-from sensorfault.logs.table import LogError
+from sensorfault.logs.table import SAID, LogError
 
 _COMMAND = re.compile(r"(^|[_/])(cmd|command|setpoint|goal|target|desired)([_/]|$)", re.IGNORECASE)
 _ROWS = 500_000  # a guess looks at so many rows from the beginning
@@ -40,6 +40,11 @@ class Guess:
         return f"{self.path.name} ({self.file.table})" if self.file.table else self.path.name
 
     @property
+    def measures(self) -> bool:
+        """Whether it has a measurement, or an estimate; not only a state, or what a sensor says of itself."""
+        return any(channel.kind not in SAID for sensor in self.sensors for channel in sensor.channels)
+
+    @property
     def stem(self) -> str:
         """What it is called: its table, or its file where that holds one."""
         return self.file.table or self.topic or stem_of(self.path)
@@ -61,21 +66,20 @@ def look_at(file: Path, tell: Callable[[float], None]) -> Look:
     except LogError as error:
         return Look([], [error], [])
     said = [said for one in tables.values() for said in (*(broken.sentence(file) for broken in one.damage), *one.notes)]
-    stock = recognised(tables) if len(tables) > 1 else None
+    stock = recognised(tables)
     if stock is not None:
-        fields = stock.fields(tables)
-        guesses, errors = _guess_tables({name: tables[name] for name in fields}, fields)
-        if guesses:
+        guesses, errors, remarks = _guess_stock(stock, tables)
+        if any(one.measures for one in guesses):
             used = [one.file.table or "" for one in guesses]
-            said.append(
-                f"{file.name}: a log of {stock.name}; sensors are in {', '.join(used)}. Left out as not sensors: "
-                f"{_some(sorted(set(tables) - set(used)))}."
-            )
+            out = sorted(set(tables) - set(used))
+            left = f" Left out as not sensors: {_some(out)}." if out else ""
+            said += [f"{file.name}: a log of {stock.name}; sensors are in {', '.join(used)}.{left}"]
+            said += [f"{file.name}: {remark}" for remark in remarks]
             return Look(guesses, errors, list(dict.fromkeys(said)))
     commands = [name for name in tables if _COMMAND.search(name)]
     if commands:
         said.append(f"{file.name}: left out, as they are commands: {', '.join(commands)}.")
-    guesses, errors = _guess_tables({name: one for name, one in tables.items() if name not in commands}, None)
+    guesses, errors = _guess_tables((name, one) for name, one in tables.items() if name not in commands)
     return Look(guesses, errors, list(dict.fromkeys(said)))
 
 
@@ -88,17 +92,14 @@ def look_at_topics(topics: Mapping[str, Path], others: list[str], tell: Callable
             tables[topic] = read_tables(file, Ask(tell=tell))[""]
         except LogError as error:
             errors.append(error)
-    fields = PX4.fields(tables)
-    guesses = []
-    for name, meaning in fields.items():
-        try:
-            guesses.append(replace(guess_table(tables[name], None, meaning), topic=name))
-        except LogError as error:
-            errors.append(error)
+    found, wrong, remarks = _guess_stock(PX4, tables)
+    guesses = [replace(one, file=replace(one.file, table=None), topic=one.file.table or "") for one in found]
+    errors += wrong
     used = [one.path.name for one in guesses]
     left = sorted([*others, *(tables[name].path.name for name in tables if tables[name].path.name not in used)])
     out = f" Left out as not sensors: {_some(left)}." if left else ""
-    return Look(guesses, errors, [f"Topics of {PX4.name}, one file each; sensors are in {', '.join(used)}.{out}"])
+    said = f"Topics of {PX4.name}, one file each; sensors are in {', '.join(used)}.{out}"
+    return Look(guesses, errors, [said, *remarks])
 
 
 def _some(names: list[str]) -> str:
@@ -106,24 +107,31 @@ def _some(names: list[str]) -> str:
     return f"{', '.join(names[:NAMES_SHOWN])}{more}"
 
 
-def _guess_tables(tables: Tables, fields: Mapping[str, Fields] | None) -> tuple[list[Guess], list[LogError]]:
+def _guess_stock(stock: Stock, tables: Tables) -> tuple[list[Guess], list[LogError], list[str]]:
+    """The tables of an autopilot that have sensors, measurements first; why some are nothing; and remarks."""
+    sensors, remarks = stock.sensors(tables)
+    guesses, errors = _guess_tables((name, replace(tables[name], sensors=own)) for name, own in sensors.items())
+    return guesses, errors, remarks
+
+
+def _guess_tables(tables: Iterable[tuple[str, Source]]) -> tuple[list[Guess], list[LogError]]:
     """What the tables of one file are, and why some are nothing."""
     guesses, errors = [], []
-    for name, source in tables.items():
+    for name, source in tables:
         try:
-            guesses.append(guess_table(source, name or None, None if fields is None else fields[name]))
+            guesses.append(guess_table(source, name or None))
         except LogError as error:
             errors.append(LogError(f"{error} (table {name})") if name else error)
     return guesses, errors
 
 
-def guess_table(source: Source, table: str | None, fields: Fields | None) -> Guess:
-    """The clock and the sensors in one table. `fields`: what its columns mean, where that is known."""
+def guess_table(source: Source, table: str | None) -> Guess:
+    """The clock and the sensors in one table."""
     path = source.path
     head = replace(source, frame=source.frame.head(_ROWS))
     time, unit, why = guess_time(head)
     clock = read_clock(head, time, unit)
-    sensors, left_out = _sensors(head, time, clock, fields)
+    sensors, left_out = _sensors(head, time, clock)
     tag = path.with_name(path.name + ".tag")
     has_tag = tag.is_file() and not clock.is_unix
     file = FileEntry(
@@ -138,13 +146,11 @@ def guess_table(source: Source, table: str | None, fields: Fields | None) -> Gue
     return Guess(path, tuple(source.frame.columns), file, clock, sensors, times=source.times)
 
 
-def _sensors(
-    source: Source, time: str, clock: Clock, fields: Fields | None
-) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
+def _sensors(source: Source, time: str, clock: Clock) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
     """The sensors that the format says or the columns look like, and the columns left out with the reason why."""
     if source.sensors:
         return list(source.sensors), []
-    columns, left_out = measurements(source, time, clock, fields)
+    columns, left_out = measurements(source, time, clock)
     if not columns:
         raise LogError(
             f"{source.path}: no column beside the time looks like a measurement; describe the log in a vehicle.toml."

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sensorfault.logs.guess.columns import NO_SENSOR, OTHER_TIME, QUALITY
+from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY
 from sensorfault.logs.guess.exported import topics_of
 from sensorfault.logs.guess.look import Guess, guess_table, look_at, look_at_topics
 from sensorfault.logs.guess.naming import joined, short_names, stem_of
@@ -15,7 +15,6 @@ from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile
 
-_EXPECTED = (OTHER_TIME, QUALITY, NO_SENSOR)
 _RAW = "_uncalibrated"
 
 
@@ -38,7 +37,7 @@ def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
     if not topics:
         _refuse_several_drives(guesses)
     guesses, raw = _calibrated(guesses)
-    guesses.sort(key=_octave)
+    guesses.sort(key=_order)
     names = (
         ["log"] if len(guesses) == 1 else short_names([(one.stem, one.path.name, one.file.table) for one in guesses])
     )
@@ -60,7 +59,7 @@ def guess_source(source: Source) -> VehicleFile:
     Raises:
         LogError: no column rises like a time, or none measures anything.
     """
-    one = guess_table(source, None, None)
+    one = guess_table(source, None)
     return VehicleFile(
         source.path.stem, (replace(one.file, name="log"),), tuple(one.sensors), notes=tuple(_missed([one]))
     )
@@ -89,18 +88,19 @@ def _calibrated(guesses: list[Guess]) -> tuple[list[Guess], list[str]]:
     return [one for one in guesses if one not in raw], notes
 
 
-def _octave(one: Guess) -> int:
-    """Fast files first: where several say the same, the first is the best. Rates within an octave are alike."""
-    return round(math.log2(one.clock.period_s))
+def _order(one: Guess) -> tuple[bool, int]:
+    """Measurements first, and of them fast files: where several say the same, the first is the best.
+
+    Rates within an octave are alike.
+    """
+    return not one.measures, round(math.log2(one.clock.period_s))
 
 
 def _missed(guesses: list[Guess]) -> list[str]:
     """A sentence for each file with columns left out that a person might look for."""
     said = []
     for one in guesses:
-        out = [
-            f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY, NO_SENSOR)
-        ]
+        out = [f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY)]
         if out:
             said.append(f"{one.called}: columns left out, as they are not measurements: {', '.join(out)}.")
     return said

@@ -10,6 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from sensorfault.logs.readers.covered import Covered
 from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.handing import Handing
+from sensorfault.logs.readers.lasting import usable
 from sensorfault.logs.readers.native import native
 from sensorfault.logs.readers.source import Ask, Damage, Source, Tables, joined, with_notes
 from sensorfault.logs.table import LogError
@@ -59,7 +60,7 @@ def read_dataflash(path: Path, ask: Ask) -> Tables:
             raise LogError(f"{path}: the DataFlash log is damaged ({bad}); copy it from the autopilot again.") from None
         damage.append(Damage(f"the descriptions of its messages are damaged ({bad}), after", f"byte {bad.at}"))
     if not handing.asked:
-        tables = {name: one for name, one in tables.items() if len(one.frame) > 1}
+        tables = usable(tables)
     tables = handing.rest(tables)
     if not tables and ask.tables is None:
         raise LogError(f"{path}: no messages with a time in this DataFlash log; name a log of a whole flight.")

@@ -7,6 +7,7 @@ import numpy as np
 
 from sensorfault.core.extras import sentence_of_missing
 from sensorfault.logs.readers.attitude import with_attitude
+from sensorfault.logs.readers.autopilot_columns import with_columns
 from sensorfault.logs.readers.format import Format
 from sensorfault.logs.readers.gzipped import head_of, is_packed, read_unpacked
 from sensorfault.logs.readers.registry import registered, suffixes
@@ -100,5 +101,5 @@ def read_tables(path: Path, ask: Ask = ALL) -> Tables:
 
 
 def _finished(tables: Tables) -> Tables:
-    """Each table with its name, and with the angles of its quaternion."""
-    return {name: with_attitude(replace(source, table=name)) for name, source in tables.items()}
+    """Each table with its name, the angles of its quaternion, and what else follows from an autopilot's columns."""
+    return {name: with_columns(with_attitude(replace(source, table=name))) for name, source in tables.items()}
