@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from sensorfault.logs.vehicle import VehicleFile
 
 
+NOTES_SHOWN = 8  # of what reading found; where a file is damaged comes first
+
+
 def in_parts(path: Path, wanted: bool | None) -> bool:
     """Whether to read a log part by part: as the user wants; by default if it is long and its format allows it."""
     from sensorfault.logs.parts import is_long_log
@@ -117,5 +120,7 @@ def _memory() -> float:
 
 def _print(summary: str, notes: Sequence[str]) -> None:
     show.say(summary)
-    for note in notes:
+    for note in notes[:NOTES_SHOWN]:
         show.say(f"  {note}")
+    if len(notes) > NOTES_SHOWN:
+        show.say(f"  {len(notes) - NOTES_SHOWN} more notes: 'sensorfault info' and --json have all.")

@@ -59,6 +59,7 @@ def comparison_of(*logs: Log) -> Comparison:
     Raises:
         LogError: no two sensors of it can be compared.
     """
+    logs = tuple(log.measurements() for log in logs)
     learned = fitted(list(logs))
     names = ", ".join(log.name for log in logs)
     if not learned.limit:
@@ -84,6 +85,7 @@ def compare(log: Log, comparison: Comparison | None = None) -> Detection:
     """
     if not len(log):
         raise LogError(f"{log.name} has no rows; give a log that has some.")
+    log = log.measurements()
     found = _detection(log, judge(log, comparison.learned if comparison else None))
     assert found.coverage is not None
     if not found.coverage.compared and not found.coverage.alone:
@@ -113,6 +115,7 @@ class ComparingDetector:
 
     def take(self, part: Log, share: float = 1.0) -> None:
         """Judge the next part. `share`: how much of all that is judged it is."""
+        part = part.measurements()
         log = part if self._tail is None else _joined(self._tail, part)
         judged = judge(log, self._learned)
         self._learned = self._learned or judged.learned
