@@ -9,8 +9,8 @@ import pytest
 import fitted
 from sensorfault.evaluation import campaign as module
 from sensorfault.evaluation.campaign import MAGNITUDES, Campaign, campaign
+from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import LogError
-from sensorfault.runtime.model import MISSED
 
 KINDS = ("spike", "offset", "frozen", "missing")
 

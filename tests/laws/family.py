@@ -14,4 +14,4 @@ def family(name: str) -> tuple[str, ...]:
     files = [module for module in iter_modules(room.__path__) if module.name not in own]
     modules = [vars(import_module(f"{room.__name__}.{module.name}")) for module in files]
     standing = [recipe for names in modules for recipe in names.get("RECIPES", (names.get("RECIPE"),))]
-    return tuple(name for name, recipe in METHODS.items() if any(recipe is one for one in standing))
+    return tuple(name for name, recipe in METHODS.items() if any(one and recipe.name == one.name for one in standing))

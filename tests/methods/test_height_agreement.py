@@ -14,11 +14,12 @@ from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs import guess
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.read import read
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.methods.height.height_agreement import LEAST_S, build
 from sensorfault.runtime.detect import detect
-from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.runtime.model import Model, owners
 from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop

@@ -13,7 +13,7 @@ import scipy.linalg
 from sensorfault.calibration.open_loop import uncalibrated
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.position import ar_predictor, linear_extrapolation, lstm_predictor, persistence
-from sensorfault.methods.position.predicted import GAP
+from sensorfault.methods.position.positions import GAP
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import replay_log

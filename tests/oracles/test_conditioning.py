@@ -14,7 +14,8 @@ from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.conditioning import Conditioning
 from sensorfault.stages.statistic.mahalanobis import Mahalanobis
 from sensorfault.stages.threshold.fixed import Fixed
-from sensorfault.training.conditioning import fit_conditioning, unbroken
+from sensorfault.training.conditioning import fit_conditioning
+from sensorfault.training.unbroken import unbroken
 
 CHANNELS, LAGS, TICK = 4, 3, 0.02
 EACH = np.ones(CHANNELS, bool)

@@ -11,10 +11,11 @@ from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.logs import read
+from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import Log
 from sensorfault.methods.catalog import recipe
 from sensorfault.runtime.detect import detect
-from sensorfault.runtime.model import MISSED, Model
+from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
 from sensorfault.vehicles.car import moving, roles
 from sensorfault_studies.min2021 import bias_miss as study

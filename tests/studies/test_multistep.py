@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flown
-from sensorfault.methods.height.height_observer import Heights
+from sensorfault.methods.height.heights import Heights
 from sensorfault.runtime.replay import replay_log
 from sensorfault.training.multistep import Trained
 from sensorfault_studies.findings import Effort

@@ -9,7 +9,8 @@ import numpy as np
 from sensorfault.logs.table import Channel
 from sensorfault.numerics.two_link import ahead
 from sensorfault.simulation.arm import AS_PRINTED, motion
-from sensorfault.vehicles.arm import Joints, TwoLink, joints
+from sensorfault.vehicles.arm import Joints, joints
+from sensorfault.vehicles.two_link import TwoLink
 
 
 def test_the_columns_of_an_arm() -> None:

@@ -12,9 +12,10 @@ from sensorfault.evaluation.ranking import auc, auc_pr
 from sensorfault.faults.fault import OFFSETS, Fault
 from sensorfault.faults.inject import inject
 from sensorfault.faults.plan import plan
+from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import Log, LogError
 from sensorfault.runtime.detect import detect
-from sensorfault.runtime.model import MISSED, Model
+from sensorfault.runtime.model import Model
 
 PAUSE_S = 5.0  # between two faults
 MAGNITUDES = {  # of the injected faults, in the unit of the kind: sigmas, sigmas a second, factor, or seconds

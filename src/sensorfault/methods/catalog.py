@@ -6,6 +6,7 @@ from pkgutil import iter_modules
 
 from sensorfault import methods
 from sensorfault.logs.table import LogError
+from sensorfault.methods import cards
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime import former
 
@@ -18,8 +19,7 @@ def _recipes() -> Iterator[Recipe]:
     for family in sorted(families, key=lambda name: (*FAMILIES, name).index(name)):
         package = import_module(f"{methods.__name__}.{family}")
         for module in iter_modules(package.__path__, f"{package.__name__}."):
-            names = vars(import_module(module.name))
-            yield from names.get("RECIPES", (names["RECIPE"],) if "RECIPE" in names else ())
+            yield from cards.recipes(module.name)
 
 
 def _by_name() -> dict[str, Recipe]:

@@ -2,18 +2,22 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from sensorfault.logs.table import Log, LogError
-from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
+
+if TYPE_CHECKING:
+    from sensorfault.runtime.model import Model
 
 
 @dataclass(frozen=True)
 class Recipe:
     """`build(log, seed, session)` fits every part on a healthy log.
 
-    `false_alarm_rate` states in words the rate the limits are designed for, or that there is none. `needs(log)` raises
-    LogError where the log lacks a required channel, as far as this shows without fitting; None: only the fit shows it.
+    `false_alarm_rate` states in words the rate the limits are designed for, or that there is none. `needs(name,
+    log)` raises LogError where the log lacks a required channel, as far as this shows without fitting; None: only the
+    fit shows it.
     `parts`: the recipes that a composite consists of; it runs if at least one of them does.
     """
 
@@ -21,8 +25,8 @@ class Recipe:
     title: str
     source: str
     false_alarm_rate: str
-    build: Callable[[Log, int, Session], Model]
-    needs: Callable[[Log], object] | None = None
+    build: Callable[[Log, int, Session], "Model"]
+    needs: Callable[[str, Log], object] | None = None
     parts: tuple["Recipe", ...] = ()
 
     def __repr__(self) -> str:
@@ -35,7 +39,7 @@ class Recipe:
             return " ".join(reasons.values()) if len(reasons) == len(self.parts) else ""
         if self.needs is not None:
             try:
-                self.needs(log)
+                self.needs(self.name, log)
             except LogError as error:
                 return str(error)
         return ""

@@ -12,7 +12,6 @@ UNSEEN, NOWHERE, MOVING, ALIGNED = range(4)  # phases: no satellite yet, no posi
 EARTH_M = 6.371e6
 ANYWHERE_M = 1e7  # standard deviation of an unknown position [m]
 COARSE = 1e6  # process noise in this phase, so that a very large covariance does not lose digits
-LEAST = 4  # satellites needed for a position
 FOUND_M = 100.0  # least squares has converged if a round moves the position by less [m]
 SLOW = 3.0  # below this speed the course is no heading [m/s]
 SURE = 0.25  # the course is used as heading once its standard deviation is below this [rad]

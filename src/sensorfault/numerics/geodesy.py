@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 SEMI_MAJOR_AXIS = 6_378_137.0  # a [m]
+FARTHEST = np.deg2rad(89.9)  # east is defined up to this latitude [rad]
 FLATTENING = 1 / 298.257223563  # f
 ECCENTRICITY_SQUARED = FLATTENING * (2 - FLATTENING)  # e²
 SEMI_MINOR_AXIS = SEMI_MAJOR_AXIS * (1 - FLATTENING)  # b [m]

@@ -7,12 +7,9 @@ taken; within FARTHEST of a pole east means nothing and there is no answer.
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR_AXIS
-
-FARTHEST = np.deg2rad(89.9)  # east is defined up to this latitude [rad]
+from sensorfault.numerics.geodesy import ECCENTRICITY_SQUARED, FARTHEST, SEMI_MAJOR_AXIS
 
 Number = Float[Array, ""]
 

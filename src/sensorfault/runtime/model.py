@@ -4,16 +4,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from sensorfault.core.monitor import Monitor
 from sensorfault.logs.epochs import Epoch, Framing
+from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
 from sensorfault.runtime import show
 
 MOTION = "motion"  # in place of a channel: this test judges the motion of the vehicle
 TOGETHER = ", "  # joins channels that one test accuses together
-MISSED = 3.0  # a sensor is silent after this many of its periods without a measurement
 
 
 @dataclass(frozen=True)
@@ -101,19 +101,3 @@ def owners(channels: tuple[Channel, ...], sensors: tuple[Sensor, ...]) -> tuple[
     """Index of the sensor of each channel."""
     index = {sensor.name: i for i, sensor in enumerate(sensors)}
     return tuple(index[channel.sensor] for channel in channels)
-
-
-def hold_s(log: Log) -> Float[np.ndarray, " C"]:
-    """How long each channel's value and verdict stay valid without a new measurement [s].
-
-    One and a half periods for a sensor slower than the log's rate, 0 for one that is measured in every row.
-    """
-    period = {sensor.name: sensor.period_s for sensor in log.sensors}
-    own = np.array([period[channel.sensor] for channel in log.channels])
-    return np.where(own > 1.5 * log.period_s, 1.5 * own, 0.0)
-
-
-def complete(log: Log, watched: Bool[np.ndarray, " C"]) -> Bool[np.ndarray, " T"]:
-    """Rows in which every watched channel has a new value."""
-    rows: Bool[np.ndarray, " T"] = (log.fresh & np.isfinite(log.value))[:, watched].all(axis=1)
-    return rows

@@ -14,6 +14,7 @@ from sensorfault.core.types import Sample, Trust
 from sensorfault.logs.table import Log, LogError
 from sensorfault.runtime.runners import samples
 from sensorfault.stages.residual.bicycle_kalman import Belief, BicycleKalman, Columns
+from sensorfault.training.bicycle_data import _fast, check_bicycle
 from sensorfault.training.mounting import fit_mounting
 from sensorfault.vehicles.car import Roles, moving
 
@@ -22,7 +23,6 @@ WARM_S = 10.0  # the start of a filter is ignored for this long [s]
 HUBER = 3.0  # a larger normalised innovation counts by its size, not its square
 ROUNDS = 15  # rounds of the search for noise and lags
 FIRST_STEP = (0.7,) * 8 + (0.1, 0.1, 0.02)
-LEAST_MOVING_S = 20.0
 BIAS_WALK = 1e-8  # of the turn rate's bias [(rad/s)^2 per s]; too slow to be seen in a short drive
 # sd of: position [m/√s], heading [rad/√s], speed [m/s/√s], bias of acceleration [m/s^2/√s], a fix along and across [m],
 # velocity [m/s]
@@ -47,41 +47,6 @@ def fit_bicycle(
     fitted = _descend(_start(log, found, wheelbase_m, steering_ratio), log, found)
     healthy: BicycleKalman = eqx.tree_at(lambda m: m.spread, fitted, jnp.asarray(healthy_spread(fitted, log)))
     return healthy
-
-
-def check_bicycle(log: Log, found: Roles) -> None:
-    """Check that the log has the channels and the motion that the fit needs.
-
-    Raises:
-        LogError: a channel is missing, or the car hardly moves.
-    """
-    steered = found.steering is not None
-    lacking = [
-        words
-        for missing, words in (
-            (found.position is None, "latitude and longitude"),
-            (found.speed is None and (found.north is None or found.east is None), "speed"),
-            (found.gyro is None and not steered, "gyro with x, y, z, nor a steering angle"),
-        )
-        if missing
-    ]
-    if lacking:
-        raise LogError(
-            f"{log.name} has no {lacking[0]}, which the bicycle model needs; name the columns in vehicle.toml."
-        )
-    times = moving(log, found) if found.velocity else _fast(log, found)
-    seconds = len(times) * float(np.median(np.diff(times))) if len(times) > 2 else 0.0
-    if seconds < LEAST_MOVING_S:
-        raise LogError(
-            f"{log.name} moves faster than 2 m/s for {seconds:.0f} s, but the bicycle model needs {LEAST_MOVING_S:g} "
-            "s; give a drive that moves."
-        )
-
-
-def _fast(log: Log, found: Roles) -> Float[np.ndarray, " N"]:
-    assert found.speed is not None
-    times: Float[np.ndarray, " N"] = log.time[log.fresh[:, found.speed] & (np.abs(log.value[:, found.speed]) > 2.0)]
-    return times
 
 
 def _velocity(log: Log, found: Roles) -> tuple[int, ...]:

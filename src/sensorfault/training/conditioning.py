@@ -9,22 +9,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.stages.residual.conditioning import Conditioning
+from sensorfault.training.unbroken import LAGS, unbroken
 
-LAGS = 4
 BOUND = 3.0  # conditional sigmas; of 2, 3 and 4 the best compromise on two real drives
 RIDGE = 1e-8  # share of a channel's variance, for channels that depend on each other
-
-
-def unbroken(time: Float[np.ndarray, " T"], complete: Bool[np.ndarray, " T"], lags: int) -> Bool[np.ndarray, " T"]:
-    """Complete rows after `lags` complete rows, without a gap in the clock."""
-    step = np.diff(time)
-    joined = np.concatenate([[False], step < 1.5 * np.median(step)]) & complete
-    joined[1:] &= complete[:-1]
-    whole = complete.copy()
-    for lag in range(lags):
-        whole[: lag + 1] = False
-        whole[lag + 1 :] &= joined[1 : len(joined) - lag]
-    return whole
 
 
 def fit_conditioning(

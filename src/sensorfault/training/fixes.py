@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from sensorfault.logs.rates import MISSED, hold_s
 from sensorfault.logs.table import Log, LogError
-from sensorfault.runtime.model import MISSED, hold_s
 
 LEAST_FIXES = 50
 GAP_S = 2.0  # a roll-out continues over a gap of at least this length, whatever the rate of the heights [s]

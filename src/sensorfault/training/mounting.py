@@ -1,16 +1,13 @@
 """Mounting of the inertial unit in the car and lags of the receiver, from a healthy drive alone."""
 
-import sensorfault.core._jax  # isort: skip  # noqa: F401
-
 from dataclasses import dataclass
+from typing import NamedTuple
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import Log, LogError
 from sensorfault.vehicles.car import Roles
-from sensorfault.vehicles.inertial import Inertial
 
 WINDOW_S = 1.0  # changes of course and speed are compared over this time [s]
 LEAST_SPEED = 3.0  # a slower car's course is not used [m/s]
@@ -62,19 +59,12 @@ class Mounting:
         return np.cross(self.axis, self.forward)
 
 
-def inertial(mounting: Mounting, found: Roles) -> Inertial:
-    """The inertial unit with this mounting; a negative lag of the receiver counts as 0."""
-    assert found.gyro is not None
-    assert found.accelerometer is not None
-    return Inertial(
-        yaw=jnp.asarray(mounting.yaw),
-        push=jnp.asarray(mounting.thrust * mounting.forward),
-        gyro_bias=jnp.asarray(mounting.gyro_bias),
-        force_bias=jnp.asarray(mounting.accelerometer_bias),
-        lag_s=jnp.asarray(np.maximum([mounting.course_lag_s, mounting.speed_lag_s], 0.0)),
-        gyro=found.gyro,
-        accelerometer=found.accelerometer,
-    )
+class _Motion(NamedTuple):
+    """When the drive is fast enough, and the rates of course and speed over the WINDOW_S before."""
+
+    at: Float[np.ndarray, " M"]
+    course_rate: Float[np.ndarray, " M"]
+    speed_rate: Float[np.ndarray, " M"]
 
 
 def fit_mounting(log: Log, found: Roles) -> Mounting:
@@ -83,29 +73,12 @@ def fit_mounting(log: Log, found: Roles) -> Mounting:
     Raises:
         LogError: no inertial unit or velocity, or a car that never moves, turns or changes its speed.
     """
-    if found.gyro is None or found.accelerometer is None or found.velocity is None:
-        what = "gyro with x, y, z" if found.gyro is None else "accelerometer with x, y, z"
-        what = "velocity over ground (speed and course, or north and east)" if found.velocity is None else what
-        raise LogError(f"{log.name} has no {what}, which is needed to find how the inertial unit is mounted.")
-    time, speed, course = _ground(log, found)
+    at, course_rate, speed_rate = check_mounting(log, found)
+    assert found.gyro is not None
+    assert found.accelerometer is not None
     gyro, force = _sums(log, found.gyro), _sums(log, found.accelerometer)
-    at = np.arange(log.time[0] + LATEST_S + WINDOW_S, log.time[-1] - 1.0, STEP_S)
-    ends = np.stack([np.interp(at, time, speed), np.interp(at - WINDOW_S, time, speed)])
-    at = at[(ends > LEAST_SPEED).all(axis=0)]
-    if len(at) * STEP_S < LEAST_MOVING_S:
-        raise LogError(
-            f"{log.name} moves faster than {LEAST_SPEED:g} m/s for {len(at) * STEP_S:.0f} s, but finding the unit's "
-            f"mounting needs {LEAST_MOVING_S:g} s; give a drive that moves."
-        )
     mean = np.nanmean(log.value[:, found.accelerometer], axis=0)
     up = mean / np.linalg.norm(mean)
-    course_rate, speed_rate = (_rate(at, time, x) for x in (course, speed))
-    for name, rate, least, unit in (
-        ("turns", course_rate, _TURN, "rad/s"),
-        ("changes its speed", speed_rate, _GO, "m/s^2"),
-    ):
-        if np.sqrt((rate**2).mean()) < least:
-            raise LogError(f"{log.name} hardly {name} (below {least:g} {unit}); give a drive with corners and stops.")
 
     # course rate = s up . (gyro - bias), at the lag with the smallest residual
     course_lag, (slope, level), course_rms = _lagged(at, course_rate, log.time, gyro @ up[:, None])
@@ -120,6 +93,35 @@ def fit_mounting(log: Log, found: Roles) -> Mounting:
     forward = fitted[:2] @ across / thrust
     force_bias = mean - forward * (forward @ mean) - forward * fitted[2] / thrust
     return Mounting(up, forward, gyro_bias, force_bias, sign, thrust, course_lag, speed_lag, course_rms, speed_rms)
+
+
+def check_mounting(log: Log, found: Roles) -> _Motion:
+    """Check that the log has the channels and the motion that the fit needs, without fitting.
+
+    Raises:
+        LogError: as `fit_mounting`.
+    """
+    if found.gyro is None or found.accelerometer is None or found.velocity is None:
+        what = "gyro with x, y, z" if found.gyro is None else "accelerometer with x, y, z"
+        what = "velocity over ground (speed and course, or north and east)" if found.velocity is None else what
+        raise LogError(f"{log.name} has no {what}, which is needed to find how the inertial unit is mounted.")
+    time, speed, course = _ground(log, found)
+    at = np.arange(log.time[0] + LATEST_S + WINDOW_S, log.time[-1] - 1.0, STEP_S)
+    ends = np.stack([np.interp(at, time, speed), np.interp(at - WINDOW_S, time, speed)])
+    at = at[(ends > LEAST_SPEED).all(axis=0)]
+    if len(at) * STEP_S < LEAST_MOVING_S:
+        raise LogError(
+            f"{log.name} moves faster than {LEAST_SPEED:g} m/s for {len(at) * STEP_S:.0f} s, but finding the unit's "
+            f"mounting needs {LEAST_MOVING_S:g} s; give a drive that moves."
+        )
+    course_rate, speed_rate = (_rate(at, time, x) for x in (course, speed))
+    for name, rate, least, unit in (
+        ("turns", course_rate, _TURN, "rad/s"),
+        ("changes its speed", speed_rate, _GO, "m/s^2"),
+    ):
+        if np.sqrt((rate**2).mean()) < least:
+            raise LogError(f"{log.name} hardly {name} (below {least:g} {unit}); give a drive with corners and stops.")
+    return _Motion(at, course_rate, speed_rate)
 
 
 def _ground(log: Log, found: Roles) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, " N"], Float[np.ndarray, " N"]]:

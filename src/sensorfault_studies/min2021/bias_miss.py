@@ -14,13 +14,14 @@ from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
 from sensorfault.faults.plan import plan
 from sensorfault.logs import read
+from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import from_si
 from sensorfault.methods.catalog import recipe
 from sensorfault.numerics.geodesy import meridian_radius, transverse_radius
 from sensorfault.numerics.poisson import rate_below
 from sensorfault.runtime.detect import detect
-from sensorfault.runtime.model import MISSED, Model
+from sensorfault.runtime.model import Model
 from sensorfault.runtime.result import Detection
 from sensorfault.training.session import Session
 from sensorfault_studies.data import real

@@ -15,8 +15,8 @@ from sensorfault.core.types import Report, Sample
 from sensorfault.core.verdicts import FAULT
 from sensorfault.logs.table import Log
 from sensorfault.methods.height import height_observer, kinematic_observer, multistep_observer
-from sensorfault.methods.height.height_observer import Heights
 from sensorfault.methods.height.multistep_observer import CHI_SQUARE
+from sensorfault.methods.height.needs import height_and_climb
 from sensorfault.runtime.model import owners
 from sensorfault.runtime.runners import replay, samples
 from sensorfault.stages.decision.exceed import Exceed
@@ -120,7 +120,7 @@ def network(flown: Flown, steps: tuple[int, ...], seeds: int, separate: bool = F
 
 def kinematic(flown: Flown, steps: tuple[int, ...], source: str = "receiver") -> Contender:
     """Without a network: climb rate of the receiver, as in the paper, or of the barometer."""
-    climb = kinematic_observer.climbing(Heights.of(KINEMATIC, flown.log), source)
+    climb = kinematic_observer.climbing(height_and_climb(KINEMATIC, flown.log, source)[1])
     fixes = Fixes.of(flown.learn, 0, climb.columns)
     words = "" if source == "receiver" else source
     return _contender(KINEMATIC, words, flown, steps, 1, [climb] * len(steps), fixes, None)

@@ -14,10 +14,11 @@ from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.verdicts import FAULT
 from sensorfault.faults.fault import Fault
 from sensorfault.faults.inject import inject
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log
 from sensorfault.logs.units import from_si
 from sensorfault.methods.height import height_agreement, kinematic_observer
-from sensorfault.runtime.model import hold_s, owners
+from sensorfault.runtime.model import owners
 from sensorfault.runtime.replay import Replayed, replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop

@@ -1,6 +1,5 @@
 """Do the joints of an arm move as its torques require? A Kalman filter on the arm of Niu & Zhao 1998."""
 
-from functools import partial
 from statistics import NormalDist
 
 import jax.numpy as jnp
@@ -8,10 +7,12 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.arm.needs import two_joints
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.two_link import Constants
-from sensorfault.runtime.model import Model, complete, hold_s, owners
+from sensorfault.runtime.model import Model, owners
 from sensorfault.runtime.replay import replay_log
 from sensorfault.simulation.arm import AS_PRINTED
 from sensorfault.stages.decision.exceed import Exceed
@@ -21,12 +22,11 @@ from sensorfault.stages.statistic.whitened import Whitened
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.online import noise
 from sensorfault.training.session import Session
-from sensorfault.vehicles.arm import Joints, TwoLink, joints
+from sensorfault.vehicles.two_link import TwoLink
 
 FALSE_ALARMS = 1e-4  # probability for one sensor at one sample
 FORGETTING = 1e-3  # process noise of one sample, as a share of the sensor's variance
 GAP = 5.5  # the filter restarts after so many ticks without a measurement
-LEAST_ROWS = 20
 WRONG_ARM = 4.0  # a larger mean square of a sensor's whitened healthy innovations shows that it is another arm
 
 
@@ -36,7 +36,7 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
     Raises:
         LogError: not exactly two joints, too few rows, or an arm that does not move as `arm` does.
     """
-    found, watched, rows = _two_joints(name, log)
+    found, watched, rows = two_joints(name, log)
     outputs, channels = (*found.rates, *found.angles), len(log.channels)
     r = noise(log.value[:, outputs]) ** 2
     limit = NormalDist().inv_cdf(1 - far / 2)
@@ -66,28 +66,6 @@ def arm_kalman(name: str, log: Log, arm: Constants = AS_PRINTED.constants, far: 
     }
     tests = tuple(("innovation", log.channels[c].path) for c in outputs)
     return Model(name, monitor, log.channels, log.sensors, tests, tuple(watched.tolist()), log.period_s, sigma, summary)
-
-
-def _two_joints(name: str, log: Log) -> tuple[Joints, Bool[np.ndarray, " C"], Bool[np.ndarray, " T"]]:
-    """The joints, the watched columns, and the rows that have all of them.
-
-    Raises:
-        LogError: not exactly two joints, or too few rows.
-    """
-    found = joints(log)
-    for what, columns in (("rate", found.rates), ("angle", found.angles), ("torque", found.torques)):
-        if len(columns) != 2:
-            raise LogError(
-                f"{log.name} has {len(columns)} channels called {what} in SI units, but {name} needs one for each of "
-                "two joints; name the columns in vehicle.toml, or take another method."
-            )
-    watched = np.isin(np.arange(len(log.channels)), (*found.rates, *found.angles))
-    rows = complete(log, watched)
-    if rows.sum() < LEAST_ROWS:
-        raise LogError(
-            f"{log.name} has {rows.sum()} rows with every rate and angle, but {name} needs {LEAST_ROWS}; give more."
-        )
-    return found, watched, rows
 
 
 def _sigma(name: str, log: Log, monitor: Monitor, watched: Bool[np.ndarray, " C"]) -> tuple[float, ...]:
@@ -120,5 +98,5 @@ RECIPE = Recipe(
     false_alarm_rate="one false alarm in 10,000 samples of each sensor, if the filter's model of arm and noise is "
     "right",
     build=_build,
-    needs=partial(_two_joints, "arm-kalman"),
+    needs=two_joints,
 )

@@ -8,8 +8,9 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.arm.needs import OFTEN, often
 from sensorfault.methods.common import per_channel
-from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.common.rows import Training
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.stages.residual.online_network import OnlineNetwork
@@ -21,7 +22,6 @@ from sensorfault.training.online import Learning, learner, noise, steps, untrain
 from sensorfault.training.session import Session
 
 NAME = "online-network"
-OFTEN = 0.9  # share of the ticks with a value; a channel that is often late breaks the runs of consecutive rows
 ROUGHEST = 8.0  # times the healthy RMS; a residual above this is never explained by a motion that is hard to predict
 TRAINING_SHARE = 0.7  # of the healthy log; the limits come from the rest
 
@@ -61,7 +61,7 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     Raises:
         LogError: too few complete rows, or no channel to watch.
     """
-    training = Training.of(NAME, log, OFTEN)
+    training = often(NAME, log)
     driven, groups = _driven(log), _groups(training, setting)
     cut = log.time[0] + TRAINING_SHARE * log.duration_s
     networks = []
@@ -147,8 +147,7 @@ RECIPE = Recipe(
     name=NAME,
     title="Each sensor predicted one sample ahead by a network that learns online; one limit for each sensor",
     source="Niu & Zhao 1998",
-    false_alarm_rate=f"{per_channel.PER_HOUR:g} false alarm an hour over all sensors, from the tail of the healthy "
-    "residual",
+    false_alarm_rate="1 false alarm an hour over all sensors, from the tail of the healthy residual",
     build=build,
-    needs=lambda log: Training.of(NAME, log, OFTEN),
+    needs=often,
 )

@@ -1,19 +1,19 @@
 """Shared by methods with one multivariate test of the whole sample: the monitor, and its two limits."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 from sensorfault.calibration.limits import repeat_limit
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
-from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.common.watch import watchable
-from sensorfault.runtime.model import Model, complete, hold_s, owners
+from sensorfault.logs.rates import hold_s
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.rows import Training
+from sensorfault.runtime.model import Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.statistic.repeats import Repeats
@@ -21,36 +21,6 @@ from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.stages.threshold.scaled_max import ScaledMax
 
 REBUILD_S = 10.0  # a stand-in is used for at most this long [s]
-LEAST_ROWS = 50
-
-
-@dataclass(frozen=True)
-class Training:
-    """A healthy log, its watched channels, and the rows that have all of them.
-
-    `reasons`: path of each channel that is not watched -> why.
-    """
-
-    log: Log
-    watched: Bool[np.ndarray, " C"]
-    rows: Bool[np.ndarray, " T"]
-    reasons: dict[str, str]
-
-    @classmethod
-    def of(cls, name: str, log: Log, often: float = 0.5) -> "Training":
-        """For the method called `name`; watched are channels with a value in at least the share `often` of the ticks.
-
-        Raises:
-            LogError: too few complete rows, or no channel to watch.
-        """
-        watched, reasons = watchable(log, often)
-        rows = complete(log, watched)
-        if rows.sum() < LEAST_ROWS:
-            raise LogError(
-                f"{log.name} has {rows.sum()} rows with every watched channel, {name} needs {LEAST_ROWS}; "
-                "give it more data, or watch fewer channels."
-            )
-        return cls(log, watched, rows, reasons)
 
 
 def uncalibrated(

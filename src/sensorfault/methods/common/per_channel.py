@@ -9,8 +9,9 @@ from jaxtyping import Float
 from sensorfault.calibration.limits import tail_limit
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log
-from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.runtime.model import Model, owners
 from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild

@@ -6,6 +6,15 @@ from jaxtyping import Bool
 from sensorfault.logs.table import Log, LogError
 
 
+def channels_to_watch(name: str, log: Log) -> None:
+    """Whether there are any, as a recipe's `needs`.
+
+    Raises:
+        LogError: no channel is left to watch.
+    """
+    watchable(log)
+
+
 def watchable(log: Log, often: float = 0.5) -> tuple[Bool[np.ndarray, " C"], dict[str, str]]:
     """Channels that change and have a value in at least the share `often` of the ticks; path -> reason for the others.
 

@@ -12,9 +12,10 @@ from sensorfault.calibration.limits import tail_limit
 from sensorfault.calibration.open_loop import open_loop_scores, uncalibrated
 from sensorfault.core.monitor import Monitor
 from sensorfault.core.stage import Stage
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.recipe import Recipe
-from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.runtime.model import Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.several import Several

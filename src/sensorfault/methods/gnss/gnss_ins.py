@@ -9,10 +9,9 @@ from jaxtyping import Float
 
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
-from sensorfault.logs.epochs import ON_L1, Framing, framing
-from sensorfault.logs.satellites import satellites
-from sensorfault.logs.table import Log, LogError
-from sensorfault.numerics.alignment import LEAST
+from sensorfault.logs.epochs import Framing
+from sensorfault.logs.table import Log
+from sensorfault.numerics.gnss.position import LEAST
 from sensorfault.runtime.model import Model, owners
 from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
@@ -22,10 +21,7 @@ from sensorfault.stages.statistic.normalised import Normalised
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.vehicles.train import ElevationNoise, Grade
 
-SYSTEMS = {"G": 32, "R": 27, "E": 36, "C": 63, "J": 10}  # satellite numbers of each system
-WHEEL = "wheel.speed"
 MOST = 3  # satellites excluded at one epoch, at most
-FEW = 60  # epochs needed for a fit
 # A small inertial unit in a vibrating vehicle: noise densities fifteen times those of its data sheet. With these the
 # innovations of a real drive have the spread that the filter predicts. The clock is a TCXO.
 GRADE = Grade(*(jnp.asarray(x) for x in (1e-3, 0.1, 1e-5, 1e-4, 0.1, 0.19, 5e-3, 0.3, 1.0)))
@@ -41,27 +37,6 @@ class Filter:
     factor: float = 1.0
     bank: bool = False
     grade: Grade = GRADE
-
-
-def framed(name: str, log: Log) -> Framing:
-    """How the log becomes epochs: a slot for each satellite number of its systems; Dopplers if some are of L1.
-
-    Raises:
-        LogError: no satellite has both a corrected pseudorange and a position, or there are too few epochs.
-    """
-    seen = satellites(log, "".join(SYSTEMS))
-    letters = [letter for letter in SYSTEMS if any(one[0] == letter for one in seen.names)]
-    most = {letter: max(int(one[1:]) for one in seen.names if one[0] == letter) for letter in letters}
-    names = tuple(f"{x}{i:02d}" for x in letters for i in range(1, max(SYSTEMS[x], most[x]) + 1))
-    rates = bool(np.isfinite(seen.doppler[:, [one[0] in ON_L1 for one in seen.names]]).any())
-    wheel = WHEEL if any(channel.path == WHEEL for channel in log.channels) else ""
-    how = framing(log, names, rates, wheel)
-    epochs = int((np.isfinite(seen.corrected).sum(axis=1) >= LEAST).sum())
-    if epochs < FEW:
-        raise LogError(
-            f"{log.name} has {epochs} epochs with {LEAST} satellites, but {name} needs {FEW}; give a longer log."
-        )
-    return how
 
 
 def navigation(how: Framing, filter: Filter) -> InsGnss:

@@ -9,7 +9,8 @@ from sensorfault.calibration.chi_square import chi_square
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.gnss.gnss_ins import Filter, fitted, framed, model, monitor, navigation
+from sensorfault.methods.gnss.gnss_ins import Filter, fitted, model, monitor, navigation
+from sensorfault.methods.gnss.needs import framed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.blocks import enough
 from sensorfault.runtime.model import Model
@@ -65,21 +66,23 @@ def _build(name: str, log: Log, seed: int, session: Session) -> Model:
     return model(name, log, how, epochs, calibrated, (test,), summary)
 
 
-def _recipe(name: str, title: str, source: str) -> Recipe:
-    return Recipe(
-        name=name,
-        title=title,
-        source=source,
-        false_alarm_rate=f"{FALSE_ALARMS:g} of healthy epochs if innovations are white and Gaussian; real ones are not",
-        build=partial(_build, name),
-        needs=partial(framed, name),
-    )
-
-
-CHI_SQUARE, AVERAGED = "innovation-chi-square", "averaged-innovation"
+CHI_SQUARE = "innovation-chi-square"
+AVERAGED = "averaged-innovation"
 RECIPES = (
-    _recipe(
-        CHI_SQUARE, "GNSS/INS filter, χ² of all innovations of an epoch", "Wang et al. 2023, (1)-(9), for comparison"
+    Recipe(
+        name=CHI_SQUARE,
+        title="GNSS/INS filter, χ² of all innovations of an epoch",
+        source="Wang et al. 2023, (1)-(9), for comparison",
+        false_alarm_rate="0.01 of healthy epochs if innovations are white and Gaussian; real ones are not",
+        build=partial(_build, CHI_SQUARE),
+        needs=framed,
     ),
-    _recipe(AVERAGED, "GNSS/INS filter, averaged innovations (AIME)", "Diesel & Luu 1995, as in Wang et al. 2023"),
+    Recipe(
+        name=AVERAGED,
+        title="GNSS/INS filter, averaged innovations (AIME)",
+        source="Diesel & Luu 1995, as in Wang et al. 2023",
+        false_alarm_rate="0.01 of healthy epochs if innovations are white and Gaussian; real ones are not",
+        build=partial(_build, AVERAGED),
+        needs=framed,
+    ),
 )

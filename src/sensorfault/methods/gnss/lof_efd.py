@@ -1,7 +1,5 @@
 """The method of Wang et al. 2023: local outlier factor of each satellite's innovation in a tightly coupled GNSS/INS."""
 
-from functools import partial
-
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
@@ -10,7 +8,8 @@ from sensorfault.calibration.density import density_limit
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.gnss.gnss_ins import Filter, fitted, framed, healthy, model, monitor, navigation
+from sensorfault.methods.gnss.gnss_ins import Filter, fitted, healthy, model, monitor, navigation
+from sensorfault.methods.gnss.needs import framed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.outlier_factor import LocalDensity
 from sensorfault.runtime.model import Model
@@ -55,5 +54,5 @@ RECIPE = Recipe(
     source="Wang et al. 2023, (1)-(13)",
     false_alarm_rate="not reliable: designed for 1 % of epochs by a kernel density of the history, measured 7 to 22 %",
     build=_build,
-    needs=partial(framed, NAME),
+    needs=framed,
 )

@@ -1,6 +1,5 @@
 """Faults of single satellites, by a bank of filters that each leave one out: recommended for a train or a car."""
 
-from functools import partial
 from typing import Any
 
 import jax.numpy as jnp
@@ -12,16 +11,8 @@ from sensorfault.calibration.means import fit_spread, mean_tape, windows
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.gnss.gnss_ins import (
-    Filter,
-    Healthy,
-    fitted,
-    framed,
-    healthy,
-    model,
-    monitor,
-    navigation,
-)
+from sensorfault.methods.gnss.gnss_ins import Filter, Healthy, fitted, healthy, model, monitor, navigation
+from sensorfault.methods.gnss.needs import framed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.integrity import inert
 from sensorfault.runtime.model import Model
@@ -93,7 +84,7 @@ RECIPE = Recipe(
     name=NAME,
     title="Bank of GNSS/INS filters that each leave one satellite out; means of innovations over 1, 5 and 20 epochs",
     source="the filter of Wang et al. 2023; leave one out after Brown & McBurney 1988 (solution separation)",
-    false_alarm_rate=f"{PER_HOUR:g} false alarm an hour, extrapolated from the tail of the healthy log",
+    false_alarm_rate="1 false alarm an hour, extrapolated from the tail of the healthy log",
     build=_build,
-    needs=partial(framed, NAME),
+    needs=framed,
 )

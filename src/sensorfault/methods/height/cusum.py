@@ -1,9 +1,13 @@
 """Detect a slow drift of a height by the cumulative sum of its difference to the barometer."""
 
+from functools import partial
+
 import jax.numpy as jnp
 
 from sensorfault.methods.height.drift_setting import DriftTest, Setting, Statistic
-from sensorfault.methods.height.drifting import recipe
+from sensorfault.methods.height.drifting import build
+from sensorfault.methods.height.needs import two_heights
+from sensorfault.methods.recipe import Recipe
 from sensorfault.stages.statistic.cusum import Cusum
 
 NAME = "cusum"
@@ -16,8 +20,12 @@ def statistic(setting: Setting, channels: int) -> Statistic:
 
 
 TEST = DriftTest(NAME, statistic, Setting(memory_s=120.0))
-RECIPE = recipe(
-    TEST,
-    "Cumulative sum of receiver minus barometer; their offset is tracked over two minutes",
-    "Page 1954; for the faults of Wang S. et al.",
+RECIPE = Recipe(
+    name=NAME,
+    title="Cumulative sum of receiver minus barometer; their offset is tracked over two minutes; "
+    "assumes a healthy barometer",
+    source="Page 1954; for the faults of Wang S. et al.",
+    false_alarm_rate="not designed: the limit is 10 % above the largest score of the training flight",
+    build=partial(build, TEST),
+    needs=two_heights,
 )

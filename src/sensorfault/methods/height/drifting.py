@@ -7,10 +7,11 @@ import numpy as np
 
 from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.height.drift_setting import DriftTest, Setting, Statistic
-from sensorfault.methods.recipe import Recipe
-from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.methods.height.needs import two_heights
+from sensorfault.runtime.model import Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.difference import Difference
@@ -19,26 +20,21 @@ from sensorfault.stages.statistic.cusum import Cusum
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.difference import fit_difference
 from sensorfault.training.session import Session
-from sensorfault.vehicles.fixed_wing import roles
 
 REBUILD_S = 300.0  # the barometer is a stand-in for at most this long: its offset changes over minutes [s]
 LEAST_WINDOWS = 1.5  # a training flight must be this many windows long
 LEVEL = 2.0  # limit over the largest healthy difference; finds a drift that has stopped, which the other test misses
 CEILING = 1.25  # a cumulative sum stops at this many times its limit
-PRESUMES = "assumes a healthy barometer"
-FALSE_ALARM_RATE = "not designed: the limit is 10 % above the largest score of the training flight"
 
 
-def recipe(test: DriftTest, title: str, source: str) -> Recipe:
-    """The recipe of a test."""
+def build(test: DriftTest, log: Log, seed: int, session: Session) -> Model:
+    """Fit on a healthy flight.
 
-    def build(log: Log, seed: int, session: Session) -> Model:
-        session.progress("measuring how the two heights differ when healthy")
-        return drift(log, test)
-
-    return Recipe(
-        test.name, f"{title}; {PRESUMES}", source, FALSE_ALARM_RATE, build, lambda log: _two_heights(test.name, log)
-    )
+    Raises:
+        LogError: the log lacks one of the two heights, or the flight is too short.
+    """
+    session.progress("measuring how the two heights differ when healthy")
+    return drift(log, test)
 
 
 def drift(log: Log, test: DriftTest) -> Model:
@@ -76,7 +72,7 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
         LogError: the log lacks one of the two heights, or the flight is too short.
     """
     needed = LEAST_WINDOWS * setting.window_s
-    measured, reference = _two_heights(name, log)
+    measured, reference = two_heights(name, log)
     if log.duration_s < needed:
         raise LogError(
             f"{log.name} lasts {log.duration_s:.0f} s, but {name} needs {needed:.0f} s to learn what is healthy; give "
@@ -93,22 +89,6 @@ def difference(name: str, log: Log, setting: Setting) -> Difference:
         channels=len(log.channels),
     )
     return fit_difference(part, log, setting.lagging)
-
-
-def _two_heights(name: str, log: Log) -> tuple[int, int]:
-    """Columns of the receiver's height and of the barometer's height.
-
-    Raises:
-        LogError: the log lacks one of them.
-    """
-    found = roles(log)
-    if found.height is None or found.barometric is None:
-        lacks = "no height of a satellite receiver" if found.height is None else "no height of a barometer"
-        raise LogError(
-            f"{log.name} has {lacks}, but {name} compares both; name the columns in vehicle.toml, or take a method "
-            "that needs only one."
-        )
-    return found.height, found.barometric
 
 
 def monitor(

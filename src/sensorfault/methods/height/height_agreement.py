@@ -8,10 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.height.needs import height_sources
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.pairwise_difference import PAST, RECENT
-from sensorfault.runtime.model import TOGETHER, Model, hold_s, owners
+from sensorfault.runtime.model import TOGETHER, Model, owners
 from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
@@ -40,7 +42,7 @@ def build(log: Log, seed: int, session: Session) -> Model:
         LogError: fewer than two sources of the height, or too short a flight.
     """
     found = roles(log)
-    sources = _height_sources(log, found)
+    sources = height_sources(NAME, log)
     columns, pairs = tuple(sources), tuple(combinations(range(len(sources)), 2))
     free = Agreement(
         limit=jnp.full((2, len(pairs)), FREE_M),
@@ -107,23 +109,6 @@ def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray,
     return np.where(known, MARGIN * np.maximum(largest, FINEST_M[:, None]), np.inf)
 
 
-def _height_sources(log: Log, found: Roles) -> dict[int, float]:
-    """Columns of all sources of the height, with the sign of a vertical speed, 0 for a height; the receiver's first.
-
-    Raises:
-        LogError: fewer than two.
-    """
-    heights = [(c, 0.0) for c in (found.height, found.barometric) if c is not None]
-    speeds = [(found.vertical, found.upward), (found.inertial, found.inertial_upward)]
-    sources = dict([*heights, *((c, sign) for c, sign in speeds if c is not None)])
-    if not heights or len(sources) < 2:
-        raise LogError(
-            f"{log.name} has {len(sources)} channels of its height (altitude [m], vertical speed [m/s]), but {NAME} "
-            "compares at least two, one of them an altitude; name the columns in vehicle.toml, or take another method."
-        )
-    return sources
-
-
 def _owners(log: Log, found: Roles) -> tuple[int, ...]:
     """Which channels may fail together: those of one sensor, and the receiver's height and vertical speed even where
     the log has them as two sensors.
@@ -162,5 +147,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: each limit is 50 % above the largest healthy difference; a flight of minutes is "
     "too short to measure the rate of a test with a memory of a minute",
     build=build,
-    needs=lambda log: _height_sources(log, roles(log)),
+    needs=height_sources,
 )

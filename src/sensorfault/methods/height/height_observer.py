@@ -1,7 +1,6 @@
 """Shared by both observers of a height: the height's column, the error of a roll-out, and the monitor."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
@@ -10,8 +9,10 @@ from jaxtyping import Array, Float
 
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
-from sensorfault.logs.table import Log, LogError
-from sensorfault.runtime.model import Model, hold_s, owners
+from sensorfault.logs.rates import hold_s
+from sensorfault.logs.table import Log
+from sensorfault.methods.height.heights import Heights
+from sensorfault.runtime.model import Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.multistep_observer import MultistepObserver
@@ -19,42 +20,12 @@ from sensorfault.stages.threshold.adaptive import Adaptive
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.fixes import Fixes
 from sensorfault.training.roll_out import errors
-from sensorfault.vehicles.fixed_wing import Roles, roles
 from sensorfault.vehicles.height import Climb, StepNetwork
 
 PER_HOUR = 1.0  # false alarms an hour that the limits are set for
 BLOCK_S = 10.0  # alarms within this time count once [s]
 LEAST_WINDOWS = 20
 AGES = (1, 2, 5, 12, 25, 50, 100)  # the error of a roll-out is measured after these steps
-
-
-@dataclass(frozen=True)
-class Heights:
-    """A healthy log, the column of the height to observe, and the roles of the other columns."""
-
-    log: Log
-    column: int
-    roles: Roles
-
-    @classmethod
-    def of(cls, name: str, log: Log) -> "Heights":
-        """The receiver's height, or the barometer's height if there is no other.
-
-        Raises:
-            LogError: no height.
-        """
-        found = roles(log)
-        column = found.height if found.height is not None else found.barometric
-        if column is None:
-            raise LogError(
-                f"{log.name} has no altitude or height in metres, which {name} observes; name the columns in "
-                "vehicle.toml, or take another method."
-            )
-        return cls(log, column, found)
-
-    def fixes(self, columns: tuple[int, ...], start_s: float = -np.inf, end_s: float = np.inf) -> Fixes:
-        """New heights in a part of the log, with these inputs."""
-        return Fixes.of(self.log.between(start_s, end_s), self.column, columns)
 
 
 def observer(model: Climb | StepNetwork, fixes: Fixes, steps: tuple[int, ...], column: int) -> MultistepObserver:

@@ -8,7 +8,8 @@ import numpy as np
 from sensorfault.calibration.limits import tail_limit
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.height import height_observer
-from sensorfault.methods.height.height_observer import BLOCK_S, LEAST_WINDOWS, PER_HOUR, Heights
+from sensorfault.methods.height.height_observer import BLOCK_S, LEAST_WINDOWS, PER_HOUR
+from sensorfault.methods.height.needs import ClimbSource, height_and_climb
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import replay_log
@@ -19,7 +20,6 @@ from sensorfault.training.session import Session
 from sensorfault.vehicles.height import Climb
 
 NAME = "kinematic-observer"
-SOURCES = ("receiver", "inertial", "barometric")
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     Raises:
         LogError: no height, no such vertical speed, or too few consecutive measurements.
     """
-    heights = Heights.of(NAME, log)
-    climb = climbing(heights, setting.source)
+    heights, source = height_and_climb(NAME, log, setting.source)
+    climb = climbing(source)
     fixes = heights.fixes(climb.columns)
     steps = _steps(fixes, setting)
     observer = height_observer.observer(climb, fixes, steps, heights.column)
@@ -56,30 +56,9 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     return height_observer.model(NAME, heights, calibrated, observer, fixes.period_s, summary)
 
 
-def climbing(heights: Heights, source: str = "") -> Climb:
-    """The step model that uses this source.
-
-    Raises:
-        LogError: the source is unknown, or the log does not have it.
-    """
-    found, log = heights.roles, heights.log
-    baro = found.barometric if found.barometric != heights.column else None
-    have = {
-        "receiver": (found.vertical, found.upward, True),
-        "inertial": (found.inertial, found.inertial_upward, True),
-        "barometric": (baro, 1.0, False),
-    }
-    if source and source not in SOURCES:
-        raise LogError(f"{NAME} knows no vertical speed source '{source}'; take one of {', '.join(SOURCES)}.")
-    for name in (source,) if source else SOURCES:
-        column, upward, speed = have[name]
-        if column is not None:
-            return Climb(jnp.asarray(upward), (column,), speed)
-    what = f"no {source} vertical speed" if source else "neither a vertical speed nor a second height"
-    raise LogError(
-        f"{log.name} has {what}, from which {NAME} predicts {log.channels[heights.column].path}; name the columns in "
-        "vehicle.toml, or take another method."
-    )
+def climbing(source: ClimbSource) -> Climb:
+    """The step model that uses this source."""
+    return Climb(jnp.asarray(source.upward), (source.column,), source.speed)
 
 
 def _steps(fixes: Fixes, setting: Setting) -> tuple[int, ...]:
@@ -106,7 +85,7 @@ RECIPE = Recipe(
     name=NAME,
     title="Height predicted from a measured vertical speed over 0.2 s to 60 s, one limit for each span",
     source="Wang S. et al., flapping-wing aircraft, with the vertical speed and without the network",
-    false_alarm_rate=f"{PER_HOUR:g} false alarm an hour over all limits, from the tails of the healthy residuals",
+    false_alarm_rate="1 false alarm an hour over all limits, from the tails of the healthy residuals",
     build=_build,
-    needs=lambda log: climbing(Heights.of(NAME, log)),
+    needs=height_and_climb,
 )

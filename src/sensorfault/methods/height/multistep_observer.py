@@ -9,7 +9,9 @@ import numpy as np
 from sensorfault.calibration.limits import tail_limit
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.height import height_observer
-from sensorfault.methods.height.height_observer import BLOCK_S, PER_HOUR, Heights
+from sensorfault.methods.height.height_observer import BLOCK_S, PER_HOUR
+from sensorfault.methods.height.heights import Heights
+from sensorfault.methods.height.needs import height_and_inputs
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.runtime.replay import replay_log
@@ -50,8 +52,8 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     Raises:
         LogError: no height, no input to predict it from, or too few consecutive measurements.
     """
-    heights, cut = Heights.of(NAME, log), log.time[0] + TRAINING_SHARE * log.duration_s
-    columns = _columns(heights)
+    heights, columns = height_and_inputs(NAME, log)
+    cut = log.time[0] + TRAINING_SHARE * log.duration_s
     learn, unseen = heights.fixes(columns, end_s=cut), heights.fixes(columns, cut)
     steps = _steps(learn, unseen, setting)
     session.progress(f"training a network over {max(steps)} steps")
@@ -78,23 +80,6 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
         log, residual, _statistic(heights), threshold, setting.horizon_s, unseen.period_s
     )
     return height_observer.model(NAME, heights, calibrated, observer, unseen.period_s, summary)
-
-
-def _columns(heights: Heights) -> tuple[int, ...]:
-    """Inputs of the network besides the height.
-
-    Raises:
-        LogError: the log has none of them.
-    """
-    found = heights.roles
-    climb = found.vertical if found.vertical is not None else found.inertial
-    columns = tuple(i for i in (climb, *found.inputs) if i is not None)
-    if not columns:
-        raise LogError(
-            f"{heights.log.name} has no vertical speed, pitch, throttle or elevator, from which {NAME} predicts the "
-            "height; name the columns in vehicle.toml, or take another method."
-        )
-    return columns
 
 
 def _steps(learn: Fixes, unseen: Fixes, setting: Setting) -> tuple[int, ...]:
@@ -135,8 +120,7 @@ RECIPE = Recipe(
     title="Height predicted over 12 steps by a network that feeds its own prediction back; the limit follows a "
     "companion filter and the observer's own error",
     source="Wang S. et al., multi-step neural network observer of a flapping-wing aircraft",
-    false_alarm_rate=f"{PER_HOUR:g} false alarm an hour, from the tail of residual over limit on data not used for "
-    "training",
+    false_alarm_rate="1 false alarm an hour, from the tail of residual over limit on data not used for training",
     build=build,
-    needs=lambda log: _columns(Heights.of(NAME, log)),
+    needs=height_and_inputs,
 )

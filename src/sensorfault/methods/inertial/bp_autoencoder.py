@@ -1,7 +1,7 @@
 """The autoencoder trained by backpropagation, which Min et al. 2021 compare with their extreme learning machine."""
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.common.rows import Training
 from sensorfault.methods.inertial.reconstructed import reconstructed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
@@ -25,5 +25,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
     "held-out data",
     build=build,
-    needs=lambda log: Training.of(NAME, log),
+    needs=Training.of,
 )

@@ -6,14 +6,15 @@ from jaxtyping import Float
 
 from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Monitor
-from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.common.multivariate import LEAST_ROWS, Training, limited, uncalibrated
+from sensorfault.logs.table import Log
+from sensorfault.methods.common.multivariate import limited, uncalibrated
+from sensorfault.methods.common.rows import Training
+from sensorfault.methods.inertial.needs import in_a_row
 from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.mahalanobis import Mahalanobis
-from sensorfault.training.conditioning import LAGS, fit_conditioning, unbroken
+from sensorfault.training.conditioning import fit_conditioning
 from sensorfault.training.cross_validation import BLOCKS
 
-OFTEN = 0.9  # share of the ticks with a value; a channel that is often late breaks the runs of consecutive rows
 READMIT_S = 0.5  # a channel is trusted again this long after its last alarm [s]
 
 
@@ -35,22 +36,6 @@ def conditioned(name: str, log: Log, levels: bool = True, cross_validated: bool 
     if cross_validated:
         largest = max(largest, float(np.nanmax(unseen_scores(monitor, training, levels))))
     return limited(name, training, monitor, residual.cov, "mahalanobis", largest, runs)
-
-
-def in_a_row(name: str, log: Log) -> Training:
-    """The training data for conditioning: channels with a value in nearly every tick, rows that follow LAGS others.
-
-    Raises:
-        LogError: no channel to watch, or too few such rows.
-    """
-    training = Training.of(name, log, OFTEN)
-    rows = int(unbroken(log.time, training.rows, LAGS).sum())
-    if rows < LEAST_ROWS:
-        raise LogError(
-            f"{log.name} has {rows} rows that follow {LAGS} complete ones without a gap, {name} needs {LEAST_ROWS}; "
-            "give it more data, or watch fewer channels."
-        )
-    return training
 
 
 def unseen_scores(uncalibrated: Monitor, training: Training, levels: bool) -> Float[np.ndarray, "T K"]:

@@ -1,9 +1,7 @@
 """The extreme-learning autoencoder with which Min et al. 2021 detect instantaneous faults."""
 
-from functools import partial
-
 from sensorfault.logs.table import Log
-from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.common.rows import Training
 from sensorfault.methods.inertial.reconstructed import reconstructed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
@@ -22,5 +20,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
     "held-out data",
     build=_build,
-    needs=partial(Training.of, "elm-autoencoder"),
+    needs=Training.of,
 )

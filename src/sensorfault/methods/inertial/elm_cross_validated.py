@@ -1,9 +1,7 @@
 """The autoencoder of Min et al. 2021 with a limit found by cross-validation."""
 
-from functools import partial
-
 from sensorfault.logs.table import Log
-from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.common.rows import Training
 from sensorfault.methods.inertial.reconstructed import reconstructed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
@@ -27,5 +25,5 @@ RECIPE = Recipe(
     source="Min et al. 2021, section 2.1, with cross-validation in place of the training error of equation (10)",
     false_alarm_rate="not designed: the limit is the largest error on healthy blocks left out of the fit, scaled",
     build=_build,
-    needs=partial(Training.of, "elm-cross-validated"),
+    needs=Training.of,
 )

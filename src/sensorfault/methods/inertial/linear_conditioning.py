@@ -1,9 +1,8 @@
 """Predict the newest row linearly from the few rows before it: the baseline that a network has to beat."""
 
-from functools import partial
-
 from sensorfault.logs.table import Log
-from sensorfault.methods.inertial.conditioned import conditioned, in_a_row
+from sensorfault.methods.inertial.conditioned import conditioned
+from sensorfault.methods.inertial.needs import in_a_row
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
@@ -20,5 +19,5 @@ RECIPE = Recipe(
     source="conditional mean of a Gaussian vector; limit as in Min et al. 2021, equations (10)-(11), cross-validated",
     false_alarm_rate="not designed: the limit is the largest score on healthy blocks left out of the fit, scaled",
     build=_build,
-    needs=partial(in_a_row, "linear-conditioning"),
+    needs=in_a_row,
 )

@@ -1,9 +1,7 @@
 """Principal components, the baseline of the reconstruction methods: three components, the same limit."""
 
-from functools import partial
-
 from sensorfault.logs.table import Log
-from sensorfault.methods.common.multivariate import Training
+from sensorfault.methods.common.rows import Training
 from sensorfault.methods.inertial.reconstructed import reconstructed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
@@ -22,5 +20,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
     "held-out data",
     build=_build,
-    needs=partial(Training.of, "pca"),
+    needs=Training.of,
 )

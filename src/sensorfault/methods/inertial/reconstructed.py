@@ -7,7 +7,8 @@ from sensorfault.calibration.extremes import explained, explained_max
 from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.calibration.scaling import Scaling
 from sensorfault.logs.table import Log
-from sensorfault.methods.common.multivariate import Training, limited, uncalibrated
+from sensorfault.methods.common.multivariate import limited, uncalibrated
+from sensorfault.methods.common.rows import Training
 from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.exchange import Exchange
 from sensorfault.training.cross_validation import Fit, largest_unseen_norm

@@ -7,7 +7,6 @@ and there is no false isolation.
 """
 
 from dataclasses import replace
-from functools import partial
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -16,7 +15,8 @@ from sensorfault.calibration.limits import tail_limit
 from sensorfault.calibration.open_loop import open_loop_scores, uncalibrated
 from sensorfault.calibration.roughness import roughness
 from sensorfault.logs.table import Log
-from sensorfault.methods.inertial.conditioned import conditioned, in_a_row, unseen_scores
+from sensorfault.methods.inertial.conditioned import conditioned, unseen_scores
+from sensorfault.methods.inertial.needs import in_a_row
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.relative import Relative
@@ -51,5 +51,5 @@ RECIPE = Recipe(
     source="conditional mean of a Gaussian vector; limit from the tail of block maxima (Hosking & Wallis 1987)",
     false_alarm_rate="one false alarm an hour, extrapolated from the scores of blocks left out of the fit",
     build=build,
-    needs=partial(in_a_row, "relative-conditioning"),
+    needs=in_a_row,
 )

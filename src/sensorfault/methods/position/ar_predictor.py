@@ -1,7 +1,8 @@
 """An autoregressive model fitted by least squares, which Min et al. 2021 compare with their LSTM."""
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.position.predicted import LENGTH, Positions, from_windows
+from sensorfault.methods.position.positions import Positions
+from sensorfault.methods.position.predicted import LENGTH, from_windows
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.training.autoregression import fit_autoregression
@@ -22,5 +23,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
     "held-out data",
     build=build,
-    needs=lambda log: Positions.of(NAME, log),
+    needs=Positions.of,
 )

@@ -9,17 +9,19 @@ from sensorfault.calibration.gumbel import gumbel_limit
 from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.calibration.whiteness import whiten
 from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log
+from sensorfault.methods.position.needs import bicycle
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.normality import jarque_bera_quantile
-from sensorfault.runtime.model import MOTION, Model, hold_s, owners
+from sensorfault.runtime.model import MOTION, Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.bicycle_kalman import LOST_S
 from sensorfault.stages.statistic.normality import Normality
 from sensorfault.stages.statistic.whitened import Whitened
 from sensorfault.stages.threshold.fixed import Fixed
-from sensorfault.training.bicycle import WARM_S, check_bicycle, fit_bicycle, normalised
+from sensorfault.training.bicycle import WARM_S, fit_bicycle, normalised
 from sensorfault.training.session import Session
 from sensorfault.vehicles.car import roles
 
@@ -124,5 +126,5 @@ RECIPE = Recipe(
     false_alarm_rate="one false alarm an hour, extrapolated from the block maxima of the training drive; the limits "
     "of the windows are 25 % higher than that",
     build=_build,
-    needs=lambda log: check_bicycle(log, roles(log)),
+    needs=bicycle,
 )

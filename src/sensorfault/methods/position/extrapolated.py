@@ -3,14 +3,15 @@
 import equinox as eqx
 import jax.numpy as jnp
 
+from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import Log
 from sensorfault.methods.common import per_channel
 from sensorfault.methods.common.watch import watchable
-from sensorfault.methods.position.predicted import Positions, limited
-from sensorfault.runtime.model import MISSED, Model
+from sensorfault.methods.position.needs import joints_or_position
+from sensorfault.methods.position.predicted import limited
+from sensorfault.runtime.model import Model
 from sensorfault.stages.residual.extrapolation import Extrapolation
 from sensorfault.stages.threshold.fixed import Fixed
-from sensorfault.vehicles.arm import joints
 
 
 def from_last(name: str, log: Log, order: int) -> Model:
@@ -30,16 +31,6 @@ def from_last(name: str, log: Log, order: int) -> Model:
         order=order,
     )
     return limited(name, positions, residual, {})
-
-
-def joints_or_position(name: str, log: Log) -> Positions | None:
-    """The positions; None if the log has joints.
-
-    Raises:
-        LogError: neither, too few positions, or a car that never moves.
-    """
-    found = joints(log)
-    return None if found.rates or found.angles else Positions.of(name, log)
 
 
 def _of_arm(name: str, log: Log, order: int) -> Model:

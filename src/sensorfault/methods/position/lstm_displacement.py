@@ -7,8 +7,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from sensorfault.logs.table import Log, LogError
-from sensorfault.methods.position.predicted import GAP, Positions, limited
+from sensorfault.logs.table import Log
+from sensorfault.methods.position.needs import positions_and_inertial
+from sensorfault.methods.position.positions import GAP, Positions
+from sensorfault.methods.position.predicted import limited
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
 from sensorfault.runtime.model import Model
@@ -16,7 +18,7 @@ from sensorfault.runtime.runners import replay, samples
 from sensorfault.stages.residual.displacement import Displacement, Seen
 from sensorfault.training.gradient import Plan, train
 from sensorfault.training.initial import new_lstm
-from sensorfault.training.prediction import Inputs
+from sensorfault.training.inputs import Inputs
 from sensorfault.training.session import Session
 from sensorfault.training.windows import Windows
 from sensorfault.vehicles.car import moving
@@ -41,7 +43,7 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     Raises:
         LogError: no positions, neither velocity nor inertial unit, too little data, or a car that never moves.
     """
-    positions, inertial = _positions_and_inertial(log)
+    positions, inertial = positions_and_inertial(NAME, log)
     untrained = _untrained(positions, inertial, seed, size)
     x = samples(log.time, log.value, log.fresh)
     uncalibrated = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
@@ -101,23 +103,6 @@ def _windows(seen: Seen, valid: np.ndarray) -> tuple[Windows, float]:
     return Windows(rows.reshape(-1, width), np.arange(count) * length, left / mend, length), mend
 
 
-def _positions_and_inertial(log: Log) -> tuple[Positions, tuple[int, ...]]:
-    """The positions, and the columns of the inertial unit.
-
-    Raises:
-        LogError: no usable positions, or neither inertial unit nor velocity.
-    """
-    positions = Positions.of(NAME, log)
-    found = positions.roles
-    inertial = (*(found.gyro or ()), *(found.accelerometer or ()))
-    if not inertial and found.velocity is None:
-        raise LogError(
-            f"{log.name} has neither gyro, accelerometer nor velocity, from which {NAME} estimates the displacement; "
-            "name the columns in vehicle.toml, or take another method."
-        )
-    return positions, inertial
-
-
 RECIPE = Recipe(
     name=NAME,
     title="Displacement of the last second by an LSTM without that second's positions; limit: largest training "
@@ -126,5 +111,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
     "held-out data",
     build=build,
-    needs=_positions_and_inertial,
+    needs=positions_and_inertial,
 )

@@ -3,7 +3,8 @@
 from dataclasses import dataclass, field
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.position.predicted import LENGTH, Positions, from_windows
+from sensorfault.methods.position.positions import Positions
+from sensorfault.methods.position.predicted import LENGTH, from_windows
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.networks.lstm import Lstm
 from sensorfault.runtime.model import Model
@@ -41,5 +42,5 @@ RECIPE = Recipe(
     false_alarm_rate="not designed: the limit is the largest training error, scaled; fit measures the rate on "
     "held-out data",
     build=build,
-    needs=lambda log: Positions.of(NAME, log),
+    needs=Positions.of,
 )

@@ -11,11 +11,12 @@ from jaxtyping import Array, Bool
 from sensorfault.calibration.limits import tail_limit
 from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
+from sensorfault.methods.position.needs import position_and_velocity
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
-from sensorfault.numerics.local import FARTHEST
-from sensorfault.runtime.model import TOGETHER, Model, hold_s, owners
+from sensorfault.runtime.model import TOGETHER, Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.motion_deficit import MotionDeficit
@@ -28,9 +29,10 @@ from sensorfault.stages.statistic.slippage import Slippage
 from sensorfault.stages.statistic.stuck_position import StuckPosition
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.deficit import fit_deficit, fit_velocity
-from sensorfault.training.mounting import fit_mounting, inertial
+from sensorfault.training.mounted import inertial
+from sensorfault.training.mounting import fit_mounting
 from sensorfault.training.session import Session
-from sensorfault.vehicles.car import LEAST_SPEED, Roles, moving, roles
+from sensorfault.vehicles.car import Roles
 from sensorfault.vehicles.inertial import Inertial
 
 HORIZONS_S = 0.25, 1.0  # a jump, and a displacement; for a slow receiver one period of its fixes, and four
@@ -45,7 +47,6 @@ REBUILD_S = 10.0  # a stand-in is used for at most this long [s]
 READMIT_S = 2.0  # a channel is trusted again this long after its last alarm [s]
 PER_HOUR = 1.0  # false alarms an hour that the limits are extrapolated to, all tests together
 MARGIN = 1.25  # factor on every limit: a training drive of minutes does not show everything
-LEAST_MOVING_S = 20.0
 SLOTS = 15  # stored references, one every 0.08 s, so at 10 Hz every fix is stored
 
 Test = tuple[tuple[str, ...], Any, float]  # names of the tests, statistic, smallest limit
@@ -57,7 +58,7 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
     Raises:
         LogError: no position, no velocity, a car that hardly moves, or a drive at a pole.
     """
-    found = _checked(log)
+    found = position_and_velocity(name, log)
     unit, reason = _unit(log, found)
     parts, judged, tests = _parts(log, found, unit, repeats)
     channels, count = len(log.channels), sum(len(names) for names, _, _ in tests)
@@ -102,33 +103,6 @@ def motion_deficit(name: str, log: Log, repeats: bool = True) -> Model:
         sigma=tuple(_sigma(parts, found, channels).tolist()),
         summary=summary,
     )
-
-
-def _checked(log: Log) -> Roles:
-    """The columns to compare.
-
-    Raises:
-        LogError: a column is missing, the drive is at a pole, or the car hardly moves.
-    """
-    found = roles(log)
-    if found.position is None or found.velocity is None:
-        lacks = "position (latitude and longitude)" if found.position is None else "velocity over ground"
-        raise LogError(
-            f"{log.name} has no {lacks}; motion-deficit compares the two: name the columns in vehicle.toml, or take a "
-            "method that needs only the inertial unit."
-        )
-    latitude = log.value[:, found.position[0]]
-    if not (np.abs(latitude[np.isfinite(latitude)]) <= FARTHEST).any():
-        raise LogError(f"{log.name} lies within 0.1 degrees of a pole, where east has no meaning; take another method.")
-    moves = moving(log, found)
-    seconds = len(moves) * float(np.median(np.diff(moves))) if len(moves) > 2 else 0.0
-    if seconds < LEAST_MOVING_S:
-        raise LogError(
-            f"{log.name} moves for {seconds:.0f} s, but motion-deficit needs {LEAST_MOVING_S:g} s above "
-            f"{LEAST_SPEED:g} "
-            "m/s to learn what is healthy; give a drive that moves."
-        )
-    return found
 
 
 def _unit(log: Log, found: Roles) -> tuple[Inertial | None, str]:
@@ -232,5 +206,5 @@ RECIPE = Recipe(
     false_alarm_rate="one false alarm an hour over all its tests, extrapolated from the tail of the training drive; "
     "each limit is 25 % higher than that",
     build=_build,
-    needs=_checked,
+    needs=position_and_velocity,
 )

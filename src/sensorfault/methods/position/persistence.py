@@ -1,7 +1,8 @@
 """Persistence of a position or of each joint of an arm: a baseline that every predictor has to beat."""
 
 from sensorfault.logs.table import Log
-from sensorfault.methods.position.extrapolated import from_last, joints_or_position
+from sensorfault.methods.position.extrapolated import from_last
+from sensorfault.methods.position.needs import joints_or_position
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
@@ -21,5 +22,5 @@ RECIPE = Recipe(
     false_alarm_rate="position: not designed, the limit is the largest training error, scaled; fit measures the rate "
     "on held-out data. Joints: one false alarm an hour over all joints, from the tail of the healthy residual",
     build=build,
-    needs=lambda log: joints_or_position(NAME, log),
+    needs=joints_or_position,
 )

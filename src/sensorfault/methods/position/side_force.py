@@ -7,14 +7,15 @@ import numpy as np
 from sensorfault.calibration.limits import tail_limit
 from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
+from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log
+from sensorfault.methods.position.needs import inertial_and_velocity
 from sensorfault.methods.recipe import Recipe
-from sensorfault.runtime.model import MOTION, Model, hold_s, owners
+from sensorfault.runtime.model import MOTION, Model, owners
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.statistic.lasting import Lasting
 from sensorfault.stages.threshold.fixed import Fixed
-from sensorfault.training.mounting import fit_mounting
 from sensorfault.training.session import Session
 from sensorfault.training.side_force import fit_side_force
 from sensorfault.vehicles.car import roles
@@ -71,5 +72,5 @@ RECIPE = Recipe(
     false_alarm_rate="one false alarm an hour, extrapolated from the tail of the training drive; the limit is 25 % "
     "higher",
     build=_build,
-    needs=lambda log: fit_mounting(log, roles(log)),
+    needs=inertial_and_velocity,
 )

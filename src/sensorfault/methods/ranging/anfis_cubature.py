@@ -7,6 +7,7 @@ import numpy as np
 
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.table import Log
+from sensorfault.methods.ranging.needs import follower
 from sensorfault.methods.ranging.range_filter import (
     GROWTH,
     WRONG,
@@ -49,25 +50,31 @@ def anfis(
     return model(name, log, found, calibrated, ("predicted error",), filter, summary)
 
 
-def _recipe(rmse: bool) -> Recipe:
-    name = "anfis-cubature" if rmse else "anfis-cubature-9m"
+def _build(name: str, rmse: bool, log: Log, seed: int, session: Session) -> Model:
+    found = followed(name, log)
+    session.progress("fitting the noise of ranges and dead reckoning")
+    own = fitted(log, found, Filter(growth=GROWTH))
+    session.progress("learning rules")
+    return anfis(name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)), rmse)
 
-    def build(log: Log, seed: int, session: Session) -> Model:
-        found = followed(name, log)
-        session.progress("fitting the noise of ranges and dead reckoning")
-        own = fitted(log, found, Filter(growth=GROWTH))
-        session.progress("learning rules")
-        return anfis(name, log, found, own, learned(log, found, own, lessons(log, found, own, seed)), rmse)
 
-    limit = "3 times the RMSE of the training" if rmse else "3 standard deviations of a range, 9 m for 3 m"
-    return Recipe(
-        name=name,
-        title=f"ANFIS on innovation, Mahalanobis distance and R* of an adaptive cubature filter; limit: {limit}",
-        source="Xu et al. 2023, (1)-(35)" if rmse else "Xu et al. 2023 with limit T1 in place of T2",
+RECIPES = (
+    Recipe(
+        name="anfis-cubature",
+        title="ANFIS on innovation, Mahalanobis distance and R* of an adaptive cubature filter; limit: 3 times the "
+        "RMSE of the training",
+        source="Xu et al. 2023, (1)-(35)",
         false_alarm_rate="not designed",
-        build=build,
-        needs=partial(followed, name),
-    )
-
-
-RECIPES = (_recipe(True), _recipe(False))
+        build=partial(_build, "anfis-cubature", True),
+        needs=follower,
+    ),
+    Recipe(
+        name="anfis-cubature-9m",
+        title="ANFIS on innovation, Mahalanobis distance and R* of an adaptive cubature filter; limit: 3 standard "
+        "deviations of a range, 9 m for 3 m",
+        source="Xu et al. 2023 with limit T1 in place of T2",
+        false_alarm_rate="not designed",
+        build=partial(_build, "anfis-cubature-9m", False),
+        needs=follower,
+    ),
+)

@@ -1,7 +1,5 @@
 """Which of a follower's leaders sends wrong ranges? The recommended recipe."""
 
-from functools import partial
-
 import numpy as np
 from jaxtyping import Float
 
@@ -10,6 +8,7 @@ from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.table import Log
 from sensorfault.methods.ranging.chi_square_cubature import limit
+from sensorfault.methods.ranging.needs import follower
 from sensorfault.methods.ranging.range_filter import (
     GROWTH,
     Filter,
@@ -74,5 +73,5 @@ RECIPE = Recipe(
     "help",
     false_alarm_rate="0.01 of the healthy ranges, if the noise is Gaussian",
     build=_build,
-    needs=partial(followed, "cooperative"),
+    needs=follower,
 )

@@ -1,7 +1,6 @@
 """Two thresholds on the innovations of a cubature filter, and a network that decides between them."""
 
 from collections.abc import Sequence
-from functools import partial
 
 import jax.numpy as jnp
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.ranging.chi_square_cubature import limit
+from sensorfault.methods.ranging.needs import follower
 from sensorfault.methods.ranging.range_filter import (
     GROWTH,
     WRONG,
@@ -93,5 +93,5 @@ RECIPE = Recipe(
     source="the test of Zhao et al. 2020 as described by Xu et al. 2023; details are our interpretation",
     false_alarm_rate="not designed",
     build=_build,
-    needs=partial(followed, "double-threshold"),
+    needs=follower,
 )

@@ -1,10 +1,10 @@
 """Is the error of each range too large? Logistic regression on the features of anfis-cubature."""
 
 from collections.abc import Sequence
-from functools import partial
 
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.table import Log
+from sensorfault.methods.ranging.needs import follower
 from sensorfault.methods.ranging.range_filter import (
     GROWTH,
     WRONG,
@@ -49,5 +49,5 @@ RECIPE = Recipe(
     source="the features of Xu et al. 2023, (28)-(31), without fuzzy rules",
     false_alarm_rate="not designed",
     build=_build,
-    needs=partial(followed, "logistic-cubature"),
+    needs=follower,
 )

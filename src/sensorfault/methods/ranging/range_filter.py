@@ -8,8 +8,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from sensorfault.core.monitor import Branch, Monitor
-from sensorfault.logs.table import Log, LogError
-from sensorfault.runtime.model import MISSED, Model, hold_s, owners
+from sensorfault.logs.rates import MISSED, hold_s
+from sensorfault.logs.table import Log
+from sensorfault.methods.ranging.needs import follower
+from sensorfault.runtime.model import Model, owners
 from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
@@ -22,7 +24,6 @@ from sensorfault.training.ranges import submerged
 from sensorfault.vehicles.underwater import Follower, FollowerRoles, roles
 
 START_M = 2.0  # standard deviation of the first fix, north and east [m]
-LEAST = 40  # ranges needed of each leader
 GROWTH = 0.5  # used by the recipes; the paper has none
 WRONG = 3.0  # an error above so many standard deviations of a range is an anomaly: 9 m for 3 m
 
@@ -49,20 +50,8 @@ def followed(name: str, log: Log) -> FollowerRoles:
     Raises:
         LogError: no leader, no initial position, or too few ranges.
     """
-    found = roles(log)
-    if not found.leaders:
-        raise LogError(
-            f"{log.name} has no sensor with a range [m] and a position, but {name} needs one for each leader; name the "
-            "columns in vehicle.toml, or take another method."
-        )
-    if not found.position or not log.fresh[:, list(found.position)].all(axis=1).any():
-        raise LogError(
-            f"{log.name} has no position of the vehicle itself, but {name} starts from one; give a log with a fix."
-        )
-    few = min(int(log.fresh[:, leader.range].sum()) for leader in found.leaders)
-    if few < LEAST:
-        raise LogError(f"{log.name} has a leader with {few} ranges, but {name} needs {LEAST}; give a longer log.")
-    return found
+    follower(name, log)
+    return roles(log)
 
 
 def cubature(log: Log, found: FollowerRoles, filter: Filter) -> Cubature:

@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.core.types import NEVER, Residual, Sample, Trust
 from sensorfault.numerics.columns import picked
 from sensorfault.numerics.kalman import carried, correct
-from sensorfault.vehicles.arm import TwoLink
+from sensorfault.vehicles.two_link import TwoLink
 
 START = (1.0, 1.0, 0.1, 0.1)  # standard deviations of the first rates [rad/s] and angles [rad]
 IGNORANCE = 100.0  # of the accelerations under a torque that nobody knows [rad/s^2]

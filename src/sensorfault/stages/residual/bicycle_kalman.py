@@ -11,7 +11,7 @@ from sensorfault.core.types import NEVER, Residual, Sample, Trust
 from sensorfault.numerics.columns import picked
 from sensorfault.numerics.kalman import carried, correct
 from sensorfault.numerics.local import east_north, moved, on_the_map, wrapped
-from sensorfault.vehicles.car import bicycle
+from sensorfault.vehicles.bicycle import bicycle
 
 LEAST_TURNING = 0.5  # below this speed a yaw rate turns the car less and less, at rest not at all [m/s]
 GAP_S = 2.0  # over a longer gap of the clock nothing is predicted

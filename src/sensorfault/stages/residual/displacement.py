@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from sensorfault.core.types import NEVER, Residual, Sample, Trust
 from sensorfault.numerics.local import east_north, moved, wrapped
 from sensorfault.numerics.networks.lstm import Lstm
-from sensorfault.vehicles.car import ground_velocity
+from sensorfault.vehicles.bicycle import ground_velocity
 
 
 class Seen(NamedTuple):

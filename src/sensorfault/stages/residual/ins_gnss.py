@@ -9,7 +9,8 @@ from jaxtyping import Array, Bool, Float
 from sensorfault.core.types import Residual, Sample, Trust
 from sensorfault.logs.epochs import Epoch
 from sensorfault.numerics import alignment
-from sensorfault.numerics.alignment import ALIGNED, LEAST, MOVING
+from sensorfault.numerics.alignment import ALIGNED, MOVING
+from sensorfault.numerics.gnss.position import LEAST
 from sensorfault.numerics.ins_error import OFFSETS, POS, corrected
 from sensorfault.numerics.kalman import correct_many
 from sensorfault.stages.residual import left_out

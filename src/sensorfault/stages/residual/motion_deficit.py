@@ -11,7 +11,7 @@ from sensorfault.core.types import NEVER, Residual, Sample, Trust
 from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
 from sensorfault.numerics.local import east_north, moved, on_the_map, wrapped
 from sensorfault.numerics.trail import Trail
-from sensorfault.vehicles.car import ground_velocity
+from sensorfault.vehicles.bicycle import ground_velocity
 from sensorfault.vehicles.inertial import STANDING, Inertial, turned
 
 HOLD_S = 1.0  # for so long a velocity stands for the next

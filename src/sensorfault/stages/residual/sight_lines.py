@@ -8,8 +8,9 @@ from jaxtyping import Array, Bool, Float
 
 from sensorfault.core.types import Sample
 from sensorfault.logs.epochs import Epoch
-from sensorfault.numerics.alignment import LEAST, MOVING
+from sensorfault.numerics.alignment import MOVING
 from sensorfault.numerics.gnss.constants import L1_HZ, LIGHT_M_S
+from sensorfault.numerics.gnss.position import LEAST
 from sensorfault.numerics.gnss.sight import distance, turned
 from sensorfault.numerics.ins_error import CLOCK, OFFSETS, upward
 from sensorfault.stages.residual.ins_belief import Belief

@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float
 
 from sensorfault.core.types import NEVER, Residual, Sample, Trust
 from sensorfault.numerics.local import wrapped
-from sensorfault.vehicles.car import ground_velocity
+from sensorfault.vehicles.bicycle import ground_velocity
 from sensorfault.vehicles.inertial import STANDING, Inertial, turned
 
 SLOWEST = 3.0  # below this the inertial unit is led, not compared [m/s]

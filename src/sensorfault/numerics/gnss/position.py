@@ -1,0 +1,3 @@
+"""What a position needs."""
+
+LEAST = 4  # satellites
