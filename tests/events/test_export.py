@@ -50,7 +50,14 @@ def in_a_table(event: Event) -> dict[str, object]:
 
 
 def test_candidates_stand_in_one_cell(tmp_path: Path) -> None:
-    event = replace(EVENTS[0], kind="unknown", sensor=None, channel=None, candidates=("wheels", "gnss"), found_by="wheel | gnss.speed")
+    event = replace(
+        EVENTS[0],
+        kind="unknown",
+        sensor=None,
+        channel=None,
+        candidates=("wheels", "gnss"),
+        found_by="wheel | gnss.speed",
+    )
     write_events([event], log(), tmp_path / "events.csv")
     (row,) = csv.DictReader((tmp_path / "events.csv").read_text().splitlines())
     assert (row["candidates"], row["found_by"]) == ("wheels, gnss", "wheel | gnss.speed")

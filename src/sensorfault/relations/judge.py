@@ -68,7 +68,7 @@ def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
         facts_of["mounted"] = float(not any(m.why for m in mountings.values()))
         facts_of["forward"] = float(all(m.forward for m in mountings.values()))
         used = {key: signal for key, signal in signals.items() if key not in unknown}
-        for start, end in pieces_of(used):
+        for start, end in pieces_of(signals):
             if end - start < SHORTEST_S:
                 continue
             inside = {key: part for key, signal in used.items() if len((part := signal.cut(start, end)).time) >= 4}
