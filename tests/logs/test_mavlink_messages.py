@@ -95,3 +95,55 @@ def test_what_holds(log: Log) -> None:
     assert news(log, "armed.armed").tolist() == [0] * 5 + [1] * 5
     assert news(log, "landed.landed").tolist() == [1] * 5 + [0] * 5
     assert {c.kind for c in log.channels if c.sensor in ("armed", "landed", "mode")} == {"context"}
+
+
+def late(content: bytes, delays_us: list[int]) -> bytes:
+    """The same packets, each handed over later by one delay after the other."""
+    said, at, k = bytearray(content), 0, 0
+    while at < len(said):
+        us = int.from_bytes(said[at : at + 8], "big") + delays_us[k % len(delays_us)]
+        said[at : at + 8] = us.to_bytes(8, "big")
+        at, k = at + 8 + 12 + said[at + 9], k + 1
+    return bytes(said)
+
+
+def attitudes(seconds: float, boot_ms: int = 5000, begin_us: int = START_US, rate: int = 10) -> bytes:
+    """Attitude and IMU, and a position that was last measured at the beginning."""
+    link, written = mav.MAVLink(None, 1, 1), b""
+    for k in range(round(rate * seconds)):
+        us, ms = begin_us + round(1e6 * k / rate), boot_ms + round(1e3 * k / rate)
+        for message in (
+            mav.MAVLink_attitude_message(ms, 0.1, 0.01 * k, 1.0, 0, 0, 0),
+            mav.MAVLink_raw_imu_message(1000 * ms, 0, 0, -1000, k % 7, 0, 0, 200, 0, 400),
+            mav.MAVLink_gps_raw_int_message(5_000_000, 3, 481_000_000, 110_000_000, 500_000, 80, 80, 1, 1, 9),
+        ):
+            written += struct.pack(">Q", us) + bytes(message.pack(link))
+    return written
+
+
+def opened(folder: Path, content: bytes) -> Log:
+    (folder / "flight.tlog").write_bytes(content)
+    return read(folder / "flight.tlog")
+
+
+def test_packets_that_arrive_in_bursts_have_their_own_times(tmp_path: Path) -> None:
+    content = attitudes(20)
+    burst = [us for step in range(5) for us in 3 * [400_000 - 100_000 * step]]
+    log = opened(tmp_path, late(content, burst))
+    assert len(log) == 200
+    np.testing.assert_allclose(np.diff(log.time), 0.1, atol=1e-6)
+    assert log.epoch_s == pytest.approx(START_US / 1e6, abs=1e-3)  # the quickest ties the clocks
+    np.testing.assert_array_equal(news(log, "attitude.pitch"), np.float32(0.01 * np.arange(200)).astype(float))
+
+
+def test_an_autopilot_that_starts_anew(tmp_path: Path) -> None:
+    content = attitudes(20, boot_ms=100_000) + attitudes(20, boot_ms=300, begin_us=START_US + 25_000_000)
+    log = opened(tmp_path, content)
+    assert log.duration_s == pytest.approx(44.9, abs=0.01)
+    assert log.fresh[:, log.index("attitude.roll")].sum() == 400
+
+
+def test_a_message_that_repeats_an_old_measurement_came_when_it_came(tmp_path: Path) -> None:
+    log = opened(tmp_path, attitudes(30))
+    time = log.time[log.fresh[:, log.index("gnss.satellites")]]
+    assert time[-1] == pytest.approx(29.9, abs=0.01)

@@ -43,7 +43,8 @@ class Stream:
     @property
     def pace_s(self) -> float:
         kinds = {channel.kind for channel in self.channels}
-        return self.period_s * (1.0 if "" in kinds else _ESTIMATE if self.measured else np.inf)
+        pace = self.period_s * (1.0 if "" in kinds else _ESTIMATE if self.measured else np.inf)
+        return float(f"{pace:.6g}")  # of equally fast ones the first is taken, not the one rounded down
 
 
 def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...]) -> Stream:

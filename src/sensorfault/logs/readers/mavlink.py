@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from sensorfault.logs.readers.format import Format, remembering
+from sensorfault.logs.readers.mavlink_clock import TIMED, Clocks, own_time
 from sensorfault.logs.readers.quiet import quiet
 from sensorfault.logs.readers.source import Ask, Damage, Tables, with_notes
 from sensorfault.logs.readers.telling import TellingFile
@@ -18,18 +19,28 @@ _FRAMES = {0xFE: 8, 0xFD: 12}  # a packet's first byte -> its bytes beside the p
 _SIGNED, _SIGNATURE_BYTES = 1, 13
 _AUTOPILOT = 1  # its component number
 _HEAD_BYTES = 3
+_BEGINNING_BYTES = 1 << 19  # enough packets to see how quick the quickest arrives
+
+
+def _nobody(share: float) -> None:
+    """Takes no share of the progress."""
 
 
 def read_tlog(path: Path, ask: Ask) -> Tables:
-    """Every kind of message, on the ground station's clock. `NAME[255.190]` comes from another system and component.
+    """Every kind of message, at the vehicle's own times on the ground station's clock; at arrival where it says none.
+
+    `NAME[255.190]` comes from another system and component.
 
     Raises:
         LogError: empty, or no packet in it that can be read.
     """
     with quiet() as aloud:
+        with TellingFile(path, _nobody) as file:
+            beginning = _Telemetry(path, Ask(frozenset()))
+            beginning.read(file, _BEGINNING_BYTES)
         part = None if ask.part is None else aloud(ask.part)
         with TellingFile(path, aloud(ask.tell)) as file:
-            telemetry = _Telemetry(path, replace(ask, part=part))
+            telemetry = _Telemetry(path, replace(ask, part=part), beginning.clocks)
             telemetry.read(file)
     tables, notes = telemetry.topics.tables()
     if not tables and ask.tables is None:
@@ -38,12 +49,13 @@ def read_tlog(path: Path, ask: Ask) -> Tables:
 
 
 class _Telemetry:
-    """Packets by kind, and how many bytes belong to none."""
+    """Packets by kind, and how many bytes belong to none. Without `clocks` they are gathered."""
 
-    def __init__(self, path: Path, ask: Ask) -> None:
+    def __init__(self, path: Path, ask: Ask, clocks: Clocks | None = None) -> None:
         from pymavlink.dialects.v20 import ardupilotmega
 
         self.ask = ask
+        self.clocks, self._known = clocks or Clocks(), clocks is not None
         self.topics = Topics(path, ask, _unit_of(ardupilotmega.mavlink_map))
         self._decode = ardupilotmega.MAVLink(None).decode
         self._error = ardupilotmega.MAVError
@@ -51,10 +63,12 @@ class _Telemetry:
         self._lost, self._first_lost = 0, 0
         self._ends: int | None = None
 
-    def read(self, file: TellingFile) -> None:
+    def read(self, file: TellingFile, end: int | None = None) -> None:
         """Every packet; where none follows the other, the next one is looked for byte by byte."""
         while head := file.read(_TIME_BYTES + _HEAD_BYTES):
             start = file.tell() - len(head)
+            if end is not None and start > end:
+                return
             size = _size(head)
             packet = head + file.read(max(0, size - len(head)))
             if len(packet) < size:
@@ -79,10 +93,21 @@ class _Telemetry:
             if not _follows(file):
                 return False
             self.topics.cannot(topic, "unknown MAVLink type")
-        elif self.ask.wants(topic):
-            received_us = int.from_bytes(packet[:_TIME_BYTES], "big")
-            self.topics.take(topic, name, received_us * 1000, message.to_dict())
+        elif self.ask.wants(topic) or not self._known:
+            received_ns = int.from_bytes(packet[:_TIME_BYTES], "big") * 1000
+            self._keep(topic, name, system, received_ns, message.to_dict())
         return True
+
+    def _keep(self, topic: str, name: str, system: int, received_ns: int, content: dict[str, Any]) -> None:
+        own = own_time(content)
+        if not self._known:
+            if own is not None:
+                self.clocks.see(system, own, received_ns)
+            return
+        if own is not None or TIMED & content.keys():
+            at = received_ns if own is None else self.clocks.time(system, own, received_ns)
+            content["timestamp"] = {"sec": at // 10**9, "nsec": at % 10**9}
+        self.topics.take(topic, name, received_ns, content)
 
     def damage(self) -> list[Damage]:
         """What was no packet."""
