@@ -188,3 +188,22 @@ def test_a_table_of_states_alone_is_no_log(tmp_path: Path) -> None:
     (tmp_path / "flight.log").write_text(text({"MODE": ("ModeNum", 1, [lambda t: (5,)])}))
     with pytest.raises(LogError, match="looks like a measurement"):
         read(tmp_path / "flight.log")
+
+
+def test_a_description_fits_a_flight_without_its_states(tmp_path: Path) -> None:
+    kinds = new_firmware()
+    (tmp_path / "first.log").write_text(text(kinds, STATES))
+    vehicle = guess(tmp_path / "first.log")
+    assert {"armed", "mode"} <= {sensor.name for sensor in vehicle.sensors}
+    (tmp_path / "second.log").write_text(text(kinds))  # neither armed nor changed its mode
+    log = read(tmp_path / "second.log", vehicle)
+    assert {sensor.name for sensor in vehicle.sensors} - {sensor.name for sensor in log.sensors} == {
+        "armed",
+        "landed",
+        "mode",
+    }
+    assert len(news(log, "gyro3.x")) == 25 * SECONDS
+    del kinds["BARO"]
+    (tmp_path / "third.log").write_text(text(kinds))
+    with pytest.raises(LogError, match="there is no table 'BARO' in it"):
+        read(tmp_path / "third.log", vehicle)

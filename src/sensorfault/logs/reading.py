@@ -1,6 +1,6 @@
 """The work of `read`: a log's files, its vehicle file, one clock."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,16 +47,33 @@ def _read_as(
     known = called_after(known, path)
     used = {sensor.file for sensor in known.sensors}
     pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]
-    sources = _sources(pairs, bool(notes), tell)
-    streams = [
-        read_stream(source, entry, tuple(sensor for sensor in known.sensors if sensor.file == entry.name))
-        for (entry, _), source in zip(pairs, sources, strict=True)
-    ]
+    sources = _sources(pairs, known.asides, bool(notes), tell)
+    streams, known, without = _streams(known, [entry for entry, _ in pairs], sources)
     clock = put_on_one_clock(streams, resample)
-    damage = tuple(dict.fromkeys(one.sentence(source.path) for source in sources for one in source.damage))
+    damage = tuple(dict.fromkeys(one.sentence(source.path) for source in sources.values() for one in source.damage))
+    notes = (*notes, *without)
     said = [note for stream in streams for note in stream.notes]
     all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
     return log_of(known, streams, clock, all_notes, damage)
+
+
+def _streams(
+    known: VehicleFile, entries: list[FileEntry], sources: Mapping[str, Source]
+) -> tuple[list[Stream], VehicleFile, list[str]]:
+    """What each file says, what it is, and notes. What is beside the measurements and cannot be read is left out."""
+    streams, there, notes = [], set(), []
+    for entry in entries:
+        mine = tuple(sensor for sensor in known.sensors if sensor.file == entry.name)
+        try:
+            if entry.name in sources:
+                streams.append(read_stream(sources[entry.name], entry, mine))
+                there.add(entry.name)
+        except LogError as error:
+            if entry.name not in known.asides:
+                raise
+            notes.append(f"Left out: {error}")
+    sensors = tuple(sensor for sensor in known.sensors if sensor.file in there)
+    return streams, known if sensors == known.sensors else replace(known, sensors=sensors), notes
 
 
 def read_table(source: Source, vehicle: str | Path | VehicleFile | None, resample: Resample) -> Log:
@@ -74,8 +91,13 @@ def read_table(source: Source, vehicle: str | Path | VehicleFile | None, resampl
     return log_of(known, [stream], clock, tuple(dict.fromkeys((*notes, *stream.notes, *clock.notes))), ())
 
 
-def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callable[[float], None]) -> list[Source]:
-    """Each entry's table; each file is read once. `whole`: all of its tables, as `guess` has just asked for them."""
+def _sources(
+    pairs: Sequence[tuple[FileEntry, Path]], asides: frozenset[str], whole: bool, tell: Callable[[float], None]
+) -> dict[str, Source]:
+    """Each entry's table; each file is read once. `whole`: all of its tables, as `guess` has just asked for them.
+
+    `asides`: entries whose table may be missing.
+    """
     wanted: dict[Path, list[FileEntry]] = {}
     for entry, file in pairs:
         wanted.setdefault(file, []).append(entry)
@@ -84,8 +106,9 @@ def _sources(pairs: Sequence[tuple[FileEntry, Path]], whole: bool, tell: Callabl
         names = frozenset(entry.table for entry in entries if entry.table is not None)
         every = whole or any(entry.table is None for entry in entries)
         tables = read_tables(file, Ask(None if every else names, tell))
-        found |= {entry.name: take_table(file, tables, entry.table) for entry in entries}
-    return [found[entry.name] for entry, _ in pairs]
+        there = [entry for entry in entries if entry.name not in asides or entry.table in (None, *tables)]
+        found |= {entry.name: take_table(file, tables, entry.table) for entry in there}
+    return found
 
 
 def log_of(

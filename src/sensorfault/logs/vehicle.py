@@ -86,6 +86,12 @@ class VehicleFile:
             raise LogError(f"{where}: this is not TOML ({error}); correct that line.") from None
         return _vehicle(TomlTable(table, where, ""), where)
 
+    @property
+    def asides(self) -> frozenset[str]:
+        """Files that hold nothing but quality and context. A log may lack them: states are written when they change."""
+        needed = {s.file for s in self.sensors if any(c.kind not in SAID for c in s.channels)}
+        return frozenset(file.name for file in self.files) - needed
+
     def conflict(self, other: "VehicleFile") -> str:
         """The first column that the two describe in another way, in words; empty if they agree."""
         mine = {(s.file, c.column): (s.name, c.name, c.unit) for s in self.sensors for c in s.channels}
