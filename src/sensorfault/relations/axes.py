@@ -86,6 +86,9 @@ def _mounting(signals: dict[str, Signal], gyro: Signal | None, acc: Signal | Non
             return Mounting(turn, _sign(acc, turn, signals["attitude"]))
         if first is not None and first.turn is not None:
             return first
+        by_course = _by_course(signals, gyro, acc)
+        if by_course.turn is not None and by_course.yaw:
+            return by_course
         return Mounting(
             np.eye(3),
             _sign(acc, np.eye(3), signals["attitude"]),

@@ -11,6 +11,7 @@ from sensorfault.relations.grid import Grid, wrapped
 from sensorfault.relations.table import Relation, residual, rows
 
 DRIFTING, LONGEST_DRIFTING_S = {"acc", "side", "steering", "accelerometer"}, 15.0
+LEAST_PERIODS = 1.5  # a window must hold this many measurements of the slower device
 SHORT = 1.3  # a window is used where the piece is this many times longer
 
 
@@ -41,6 +42,15 @@ class Piece:
     moved: Float[np.ndarray, "T K"]
 
 
+def _slowest_s(grid: Grid, relation: Relation) -> float:
+    """The period of the slower of the two devices."""
+    periods = []
+    for device in {device for (device, _), _ in relation.blame}:
+        mine = [s.period_s for key, s in grid.signals.items() if key.partition(".")[0] == device]
+        periods.append(min(mine, default=0.0))
+    return max(periods, default=0.0)
+
+
 def _windows(relation: Relation) -> tuple[float, ...]:
     """Windows of a relation: no long ones where a constant error grows with the motion, not with the time."""
     if relation.order == 2:
@@ -63,7 +73,8 @@ def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
                 lags[relation.name] = lag.fitted(left, right, relation.order)
             right = lag.shifted(right, lags[relation.name])
         d = residual(relation, left, right)
-        for window_s in _windows(relation):
+        least_s = LEAST_PERIODS * _slowest_s(grid, relation)
+        for window_s in (window for window in _windows(relation) if window >= least_s):
             if duration < SHORT * window_s:
                 continue
             one = change(d, window_s, relation.order)

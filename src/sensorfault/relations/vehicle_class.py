@@ -5,7 +5,8 @@ import numpy as np
 from sensorfault.relations.signals import Signal
 
 FAST_M_S = 9.0  # a wing does not hover: half of its flight is faster
-HIGH_M = 8.0
+CLIMBS_M_S = 1.5  # what flies climbs or sinks faster than this for a twentieth of the time
+CLIMB_S = 5.0
 
 
 def class_of(signals: dict[str, Signal]) -> str:
@@ -14,12 +15,21 @@ def class_of(signals: dict[str, Signal]) -> str:
         return "underwater"
     if "wheel" in signals or "steering" in signals:
         return "car"
-    speed = next((signals[k].value for k in ("gnss.velocity", "gnss.speed") if k in signals), None)
-    v = np.linalg.norm(speed, axis=1) if speed is not None else np.zeros(1)
-    height = signals.get("barometer") or signals.get("gnss.height")
-    rise = float(np.ptp(np.quantile(height.value[:, 0], (0.05, 0.95)))) if height is not None else 0.0
-    if "airspeed" in signals or (np.median(v) > FAST_M_S and rise > HIGH_M and "attitude" in signals):
+    if "airspeed" in signals:
         return "wing"
-    if "attitude" in signals and ("barometer" in signals or "magnetometer" in signals or rise > 2.0):
-        return "copter"
-    return "car" if speed is not None and rise < 200 and "attitude" not in signals else "unknown"
+    speed = next((signals[k].value for k in ("gnss.velocity", "gnss.speed") if k in signals), None)
+    height = signals.get("barometer") or signals.get("gnss.height")
+    if "barometer" in signals or "magnetometer" in signals or (height is not None and _climb(height) > CLIMBS_M_S):
+        if "attitude" not in signals:
+            return "unknown"
+        fast = speed is not None and float(np.median(np.linalg.norm(speed, axis=1))) > FAST_M_S
+        return "wing" if fast else "copter"
+    return "car" if speed is not None else "unknown"
+
+
+def _climb(height: Signal) -> float:
+    """How fast the vehicle climbs or sinks in a twentieth of the time [m/s]."""
+    h, time = height.value[:, 0], height.time
+    later = np.interp(time + CLIMB_S, time, h)
+    inside = time + CLIMB_S <= time[-1]
+    return float(np.quantile(np.abs(later - h)[inside], 0.95)) / CLIMB_S if inside.sum() > 20 else 0.0
