@@ -41,7 +41,6 @@ BAD_LOGS: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
     "one row": (rewrite(lambda lines: lines[:2]), ("drive",)),
     "three rows": (rewrite(lambda lines: lines[:4]), ("drive",)),
     "no time column": (rewrite(lambda lines: [line.split(",", 1)[1] for line in lines]), ("drive.csv", "time")),
-    "a cell that is no number": (put(2, "wet", lambda i: i == 1000), ("drive.csv", "1002", "gyro_y", "wet")),
     "binary": (lambda drive: drive.write_bytes(bytes(range(256)) * 50), ("drive.csv",)),
     "a channel without a value": (put(3, "", lambda i: True), ("drive.csv", "gyro_z")),
     "unsorted time": (rewrite(lambda lines: [lines[0], *lines[2001:], *lines[1:2001]]), ("drive.csv", "line 2002")),
@@ -162,7 +161,7 @@ def test_existing_answers_survive_a_failure(run: Run, drive: Path, described: Pa
     good = drive.read_bytes()
     for name in ("car.sensorfault", "page.html", "found.json", "faulty.csv", "faulty.truth.json"):
         Path(name).write_text("mine")
-    drive.write_bytes(good.replace(b"\n1.000,", b"\n1.000,wet", 1))
+    drive.write_bytes(good.partition(b"\n")[0] + b"\n")
     before = listing(tmp_path)
     for words in (
         ("fit", drive, "--out", "car.sensorfault", "--json", "found.json"),

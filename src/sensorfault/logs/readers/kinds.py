@@ -36,7 +36,8 @@ def kind_column(frame: pl.DataFrame, headless: bool) -> str | None:
         counts = column.value_counts()["count"]
         words = not any(is_valued(kind) for kind in column.unique().head(_MOST))
         changes = float((column != column.shift(1)).mean() or 0.0)  # type: ignore[arg-type]
-        if words and 2 <= len(counts) <= _MOST and int(counts.min() or 0) >= _FEWEST and changes >= _OFTEN:  # type: ignore[call-overload]
+        fewest = int(counts.to_numpy().min()) if len(counts) else 0
+        if words and 2 <= len(counts) <= _MOST and fewest >= _FEWEST and changes >= _OFTEN:
             return name
     return None
 

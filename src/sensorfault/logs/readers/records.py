@@ -36,8 +36,8 @@ def records(lines: Iterable[tuple[int, str]], delimiter: str | None) -> Iterator
             numbers.append(number)
             yield line.replace("\r", " ") + "\n"
 
-    for cells in csv.reader(seen(), delimiter=delimiter, skipinitialspace=True):
-        yield Record(numbers[0], numbers[-1], tuple(cell.strip() for cell in cells))
+    for row in csv.reader(seen(), delimiter=delimiter, skipinitialspace=True):
+        yield Record(numbers[0], numbers[-1], tuple(cell.strip() for cell in row))
         numbers.clear()
 
 
