@@ -11,7 +11,6 @@ from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
-GAP = 3.0  # a gap is longer than this many usual periods
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
 HOPELESS = 0.2  # share of rows that may be dropped
 _PER_SECOND = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
@@ -63,8 +62,7 @@ def read_clock(source: Source, column: str, unit: str) -> Clock:
         raise LogError(f"{source.path}: one row is no log; name a file with at least two rows at different times.")
     first = float(time[rows[0]])
     kept = (time if len(rows) == len(time) else time[rows]) - first
-    begin = 0.0 if source.begin_s is None else source.begin_s - zero - first
-    period, unsteady = _steadiness(name, kept, begin)
+    period, unsteady = _steadiness(name, kept)
     return Clock(zero + first, kept, rows, period, (*notes, *faults, *unsteady))
 
 
@@ -150,18 +148,12 @@ def _longest_rise(time: np.ndarray) -> np.ndarray:
     return rise
 
 
-def _steadiness(name: str, time: np.ndarray, begin: float) -> tuple[float, list[str]]:
-    """The usual step, and sentences on gaps and jitter with times counted from `begin`."""
+def _steadiness(name: str, time: np.ndarray) -> tuple[float, list[str]]:
+    """The usual step, and a sentence on jitter."""
     step = np.diff(time)
     least, most = float(step.min()), float(step.max())
     period = float(np.median(step))
     notes = []
-    if most > GAP * period:
-        worst = int(np.argmax(step))
-        notes.append(
-            f"{name}: {counted(int((step > GAP * period).sum()), 'gap')} longer than {GAP:g} periods of {period:.4g} "
-            f"s, the longest {most:.4g} s at {time[worst] - begin:.3f} s; left as gaps."
-        )
     if max(most - period, period - least) > _JITTER * period:  # else no step is that far off
         off = float(np.quantile(np.abs(step - period), 0.95))
         if off > _JITTER * period:

@@ -54,7 +54,7 @@ class Source:
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
     `units`: the unit of each column whose format says it, spelled as in units.py.
     `times`: the file of its time column, where that is another file.
-    `before`: rows of the table in parts of the file that were read before this one; `begin_s`: its first reading there.
+    `before`: rows of the table in parts of the file that were read before this one.
     `notes` and `damage` are those of the whole file, the same for each of its tables.
     """
 
@@ -70,7 +70,6 @@ class Source:
     table: str = ""
     times: Path | None = None
     before: int = 0
-    begin_s: float | None = None
 
     @property
     def name(self) -> str:
