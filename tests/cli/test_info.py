@@ -78,10 +78,14 @@ def test_gaps_and_holds_of_a_sensor() -> None:
 
 
 def test_parts_of_a_log_sum_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    log = fitted.rig().between(end_s=20.0)
-    log = log.without(np.arange(650, 700))  # a gap that begins with the last row of a part
+    rig = fitted.rig().between(end_s=20.0)
+    log = replace(rig, fresh=rig.fresh.copy())
+    for sensor in log.sensors:  # silent for a while, from the last row of a part on
+        log.fresh[650:700, list(log.of(sensor.name))] = False
+    log = log.without(np.arange(450, 500))  # a pause of the recording that begins with the last row of a part
     whole = summarise(log)
-    assert all(one.gaps for one in whole)
+    assert all(one.gaps == 1 for one in whole)
+    (pause,) = log.pauses
     for most in (100, 800, 1 << 20):  # the usual step is known before the gap, after it, or at the end
         monkeypatch.setattr(summary, "MOST_STEPS", most)
         summing = Summing()
@@ -89,6 +93,7 @@ def test_parts_of_a_log_sum_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> 
             rows = slice(start, start + 50)
             summing.take(replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows]))
         assert (summing.rows, summing.end_s) == (len(log), log.time[-1])
+        np.testing.assert_allclose(summing.pauses, [pause])
         for mine, theirs in zip(summing.sensors, whole, strict=True):
             assert (mine.name, mine.channels, mine.units) == (theirs.name, theirs.channels, theirs.units)
             assert astuple(mine)[3:] == pytest.approx(astuple(theirs)[3:], rel=1e-9)

@@ -27,7 +27,9 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
     said = run("init", drive)
     assert said.code == 0, said.err
     assert said.out == ""
-    assert "gyro: x [deg/s], y [deg/s], z [deg/s]" in said.err
+    assert "gyro: x, y, z [deg/s] - likely: its 95th percentile is" in said.err
+    assert "It can judge the values of gyro.x, gyro.y, gyro.z" in said.err
+    assert "Checked for dropouts only: east_m.east_m, north_m.north_m" in said.err
     text = (tmp_path / "vehicle.toml").read_text()
     assert "[sensor.accelerometer]" in text
     assert text.count("#") > 5  # each guess with its reason
@@ -100,14 +102,15 @@ def test_detect_without_a_model_says_what_that_means(run: Run, drive: Path) -> N
 def test_detect_says_that_columns_were_guessed(run: Run, drive: Path, car: Path) -> None:
     guessed = run("detect", drive, "--method", "pca")
     assert guessed.code == 0, guessed.err
-    assert "sensorfault init" in guessed.err
-    modelled = run("detect", drive, "--model", car)  # the model knows what the columns are
-    assert "sensorfault init" not in modelled.err
+    assert "No vehicle.toml: sensors, units and held values are guesses" in guessed.err
+    guessed = run("detect", drive, "--model", car)
+    assert guessed.code == 0, guessed.err
+    assert "as the model car.sensorfault knows them, by a guess; `sensorfault init`" in guessed.err
     assert guessed.out == ""
     assert "none" in guessed.err
     run("init", drive)
     described = run("detect", drive, "--model", car)
-    assert "sensorfault init" not in described.err
+    assert "guess" not in described.err
 
 
 def test_evaluate_without_a_truth_injects_one(run: Run, drive: Path, car: Path) -> None:

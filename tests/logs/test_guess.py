@@ -306,3 +306,26 @@ def test_a_leader_is_one_sensor_even_if_it_lies_still(tmp_path: Path) -> None:
     found = {sensor.name: [channel.name for channel in sensor.channels] for sensor in guess(path).sensors}
     assert found == {"leader1": ["range", "latitude", "longitude"], "leader2": ["range", "latitude", "longitude"]}
     assert len(roles(read(path)).leaders) == 2
+
+
+def test_how_sure_a_unit_is(tmp_path: Path) -> None:
+    table = {
+        "t": TIME, "gyro_x [rad/s]": GYRO[:, 0], "rollrate": 3000 * GYRO[:, 2], "speed": SPEED, "pressure": 1e3 + SPEED,
+        **{f"acc_{axis}": ACC[:, i] for i, axis in enumerate("xyz")},
+    }  # fmt: skip
+    vehicle = guess(save(tmp_path, table))
+    sure = {f"{s.name}.{c.name}": c.why.partition(":")[0] for s in vehicle.sensors for c in s.channels}
+    assert {"gyro.x": "sure", "accelerometer.z": "likely", "speed.speed": "a guess"}.items() <= sure.items()
+    assert {why for path, why in sure.items() if "pressure" in path} == {"a guess"}
+    assert {why for path, why in sure.items() if "rollrate" in path} == {"likely"}
+
+
+def test_a_sensor_that_never_changes_is_one_all_the_same(tmp_path: Path) -> None:
+    table = {
+        "t": TIME, "gyro_x": np.full(ROWS, 0.25), "gyro_y": GYRO[:, 1], "gyro_z": GYRO[:, 2], "mag_x": 0.0 * TIME,
+        "speed": SPEED, "limit": 7.5 + 0.0 * TIME, "pressure": np.where(TIME[9] == TIME, 1000.0, np.nan),
+    }  # fmt: skip
+    vehicle = guess(save(tmp_path, table))
+    assert set(described(vehicle)["gyro"]) == {"x", "y", "z"}
+    assert set(described(vehicle)["magnetometer"]) == {"x"}
+    assert vehicle.files[0].left_out == (("limit", "constant"), ("pressure", "holds one value"))

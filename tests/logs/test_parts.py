@@ -11,11 +11,11 @@ import fitted
 from logs import written_bus
 from logs.written_ros import bag1, bag2
 from sensorfault.logs import Log, LogError, guess, read, write
+from sensorfault.logs.describing import GUESSED
 from sensorfault.logs.parts import is_long_log, read_parts
 from sensorfault.logs.readers import beginning, can_bus, csv, mdf, mdf_load, parquet, topics
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.subprocess_reader import Loaded
-from sensorfault.logs.reading import GUESSED
 
 
 @pytest.fixture(autouse=True)

@@ -116,7 +116,8 @@ def test_places_are_told_from_the_beginning_of_the_file_and_once(tmp_path: Path)
     lines[1800] = f"IMU, 18000000, {1.5}, x, 0\n"
     notes = assert_same(flown(tmp_path, lines))
     assert [note for note in notes if "gap" in note] == [
-        "flight.log (IMU): 1 gap longer than 3 periods of 0.01 s, the longest 0.05 s at 15.020 s; left as gaps."
+        "The recording has 1 gap, 0.05 s in all, the longest 0.05 s at 15.020 s; nothing is judged there, and no "
+        "sensor is called missing."
     ]
 
 

@@ -106,6 +106,7 @@ def test_the_sample_of_pyulog(real_data: Path) -> None:
         "armed",
         "mode",
     }
+    assert len(log.pauses) == 5
     assert np.nanmean(log.value[:, log.index("accelerometer.z")]) == pytest.approx(-9.62, abs=0.05)
     attitude = log.value[log.fresh[:, log.index("attitude.roll")]]
     assert len(attitude) == 6460

@@ -187,7 +187,18 @@ def test_watchable_says_why_not() -> None:
     assert watched.tolist() == [True, False, True, True, False, True, False, False]
     assert set(reasons) == {"gyro.y", "accelerometer.y", "gnss.east", "gnss.north"}
     assert "constant" in reasons["gyro.y"]
-    assert "slower" in reasons["accelerometer.y"]
+    assert reasons["accelerometer.y"] == "a value in only 25% of the rows"
+    assert reasons["gnss.east"] == "slower than the clock"
+
+
+def test_sensors_that_are_all_silent_at_times_are_watched_all_the_same() -> None:
+    value = log().value.copy()
+    value[600:1300, :6] = np.nan
+    silent = fitted.shifted(log(), value)
+    watched, _ = watchable(silent, often=0.9)
+    assert watched.tolist() == [True] * 6 + [False] * 2
+    made = fit(silent, "relative-conditioning", held_out=0.0)
+    assert made.summary["rows"] == 1300
 
 
 def test_a_constant_channel_is_watched_for_silence() -> None:
@@ -217,7 +228,7 @@ def test_conditioning_wants_rows_in_a_row() -> None:
     late = log().value.copy()
     late[::5, 0] = np.nan
     made = fit(fitted.shifted(log(), late), "relative-conditioning", held_out=0.0)
-    assert made.summary["not_watched"]["gyro.x"] == "slower than the clock"
+    assert made.summary["not_watched"]["gyro.x"] == "a value in only 80% of the rows"
     assert made.watched[1]
     late[::3, :6] = np.nan
     assert "no channel to watch" in sentence(fitted.shifted(log(), late), method="relative-conditioning")

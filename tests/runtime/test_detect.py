@@ -278,10 +278,19 @@ def without(start_s: float, end_s: float) -> Log:
     return replace(log, time=log.time[kept], value=log.value[kept], fresh=log.fresh[kept])
 
 
-def test_a_hole_in_the_log_is_nobodys_silence() -> None:
-    (hole,) = detect(fitted.model(), without(110.02, 115.02)).events
-    assert (hole.sensor, hole.kind, hole.start_s) == (None, "missing", pytest.approx(110.02))
+def test_a_hole_in_the_log_is_a_pause_and_nobodys_silence() -> None:
+    found = detect(fitted.model(), without(110.02, 115.02))
+    assert found.events == ()
+    np.testing.assert_allclose(found.log.pauses, [[110.02, 115.02]])
     assert detect(fitted.model(), without(110.02, 110.52)).events == ()
+
+
+def test_live_calls_a_hole_in_its_samples_missing() -> None:
+    live, log = fresh_live(), without(110.02, 115.02).between(109.0, 117.0)
+    for time, value in zip(log.time, log.value, strict=True):
+        live.push(float(time), value)
+    (hole,) = live.events
+    assert (hole.sensor, hole.kind, hole.start_s) == (None, "missing", pytest.approx(110.02))
 
 
 def test_a_frozen_axis_accuses_nobody_else() -> None:

@@ -33,7 +33,7 @@ def detect_log(
     `by_parts`: see `reading.in_parts`. `see` gets each part that was judged, as in `detect_file`.
     """
     parts = reading.in_parts(path, by_parts)
-    read = partial(reading.read_in, parts, path, fitting.description_of(choice, path, vehicle))
+    read = partial(reading.read_in, parts, path, vehicle, model=fitting.known_by(choice))
     comparison = fitting.comparison_of(choice)
     if comparison is not None:
         from sensorfault.runtime.compared import NothingToCompare

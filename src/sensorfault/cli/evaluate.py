@@ -37,7 +37,7 @@ def command(
     log: Path,
     vehicle: Path | None,
     model_path: Path | None,
-    method: str,
+    method: str | None,
     learn: float,
     truth_path: Path | None,
     duration_s: float,
@@ -56,7 +56,7 @@ def command(
     outputs.check_outputs([json_path], [log, vehicle, model_path, truth_path])
     truth = reading.read_truth(truth_path) if truth_path else None
     choice = fitting.Choice(model_path, method, learn, seed)
-    table = reading.read_log(log, fitting.description_of(choice, log, vehicle))
+    table = reading.read_log(log, vehicle, fitting.known_by(choice))
     model, rest = fitting.model_and_rest(choice, table)
     if truth is not None:
         begun = [fault for fault in truth if fault.start_s >= rest.time[0]]

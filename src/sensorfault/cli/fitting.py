@@ -37,32 +37,11 @@ class Choice:
             raise LogError(f"--learn is {self.learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
 
 
-def description_of(choice: Choice, log: Path, vehicle: Path | None) -> "VehicleFile | Path | None":
-    """What the columns of a log are: as the user says, else as the model was fitted, else None.
+def known_by(choice: Choice) -> "VehicleFile | None":
+    """What the chosen model knows of the columns of a log; None without a model."""
+    from sensorfault.runtime.saved import known_in
 
-    Raises:
-        LogError: the model and a vehicle.toml disagree.
-    """
-    from sensorfault.logs.place import find_vehicle
-    from sensorfault.logs.vehicle import VehicleFile
-    from sensorfault.runtime.saved import header_of
-
-    text = header_of(choice.path).get("summary", {}).get("description") if choice.path is not None else None
-    if not isinstance(text, str):
-        return vehicle
-    known = VehicleFile.parse(text, f"{choice.path}")
-    if len({entry.path for entry in known.files}) > 1:
-        return vehicle  # files of other names cannot be matched
-    beside = find_vehicle(log, vehicle)
-    if beside is None:
-        return known
-    if conflict := beside.conflict(known):
-        from sensorfault.logs import LogError
-
-        raise LogError(
-            f"{vehicle or f'the vehicle.toml beside {log}'} and the model {choice.path} disagree: {conflict}."
-        )
-    return beside
+    return known_in(choice.path) if choice.path is not None else None
 
 
 def comparison_of(choice: Choice) -> "Comparison | None":
@@ -80,31 +59,44 @@ def comparison_of(choice: Choice) -> "Comparison | None":
         return Comparison() if choice.method in (None, METHOD) else None
     method = method_of(choice.path)
     if choice.method not in (None, method):
-        raise LogError(f"{choice.path} is a model of {method}, not of {choice.method}; leave out --method.")
+        raise LogError(f"{choice.path} is a model of {method}, not of {choice.method}; leave out --method, or --model.")
     return read_comparison(choice.path) if method == METHOD else None
 
 
 def model_or_fit(choice: Choice) -> "Model | Fit":
-    """The stored model, or what fits one on a log."""
-    if choice.path is not None:
-        from sensorfault.runtime.compared import Comparison
-        from sensorfault.runtime.store import load
+    """The stored model, or what fits one on a log.
 
-        model = load(choice.path)
-        assert not isinstance(model, Comparison)  # comparison_of takes those
-        return model
+    Raises:
+        LogError: the model is of another method than the one asked for.
+    """
+    if choice.path is not None:
+        return _stored(choice.path, choice.method)
 
     def fitted(log: "Log") -> "Model":
+        from sensorfault.methods.catalog import DEFAULT
         from sensorfault.methods.fit import fit
 
-        assert choice.method is not None
+        method = choice.method or DEFAULT
         with show.progress() as bar:
-            task = bar.add_task(f"fitting {choice.method}", total=None)
-            model = fit(log, choice.method, held_out=0.0, seed=choice.seed)
+            task = bar.add_task(f"fitting {method}", total=None)
+            model = fit(log, method, held_out=0.0, seed=choice.seed)
             bar.update(task, total=1, completed=1)
         return model
 
     return fitted
+
+
+def _stored(path: Path, method: str | None) -> "Model":
+    from sensorfault.logs import LogError
+    from sensorfault.runtime.compared import Comparison
+    from sensorfault.runtime.store import load
+
+    model = load(path)
+    if isinstance(model, Comparison):
+        raise LogError(f"{path}: a model of {model.method} cannot be evaluated; fit one of another --method.")
+    if method is not None and method != model.method:
+        raise LogError(f"{path} is a model of {model.method}, not of {method}; leave out --method, or --model.")
+    return model
 
 
 def model_and_rest(choice: Choice, log: "Log") -> "tuple[Model, Log]":

@@ -49,6 +49,7 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
         "sensors": [asdict(sensor) for sensor in sensors],
         "notes": list(said.notes),
         "damage": list(said.damage),
+        "pauses": summing.pauses.tolist(),
         "applies": {name: {"without": without[name]} for name in applies},
         "does_not_apply": lacking,
     }

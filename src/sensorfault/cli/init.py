@@ -1,10 +1,15 @@
 """`sensorfault init`: write a first vehicle.toml for an unknown log."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from sensorfault.cli import options, outputs, show
+from sensorfault.cli import options, outputs, promising, show
+
+if TYPE_CHECKING:
+    from sensorfault.logs.entries import ChannelEntry, SensorEntry
 
 
 @click.command("init")
@@ -15,13 +20,16 @@ from sensorfault.cli import options, outputs, show
 def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> None:
     """Write a vehicle.toml for an unknown log, to be checked and corrected.
 
-    Every line is a guess from names and values, with its reason.
+    Every line is a guess from names and values, with its reason and how sure it is. Then init says what 'detect' will
+    be able to check in the log as it is described, or why it will refuse it.
     """
     from sensorfault.core.files import appearing
     from sensorfault.logs import LogError, guess
+    from sensorfault.logs.place import VEHICLE
 
-    target = out or (log if log.is_dir() else log.parent) / "vehicle.toml"
-    outputs.check_outputs([target, json_path], [one for one in _logs(log) if one.name != "vehicle.toml"])
+    home = log if log.is_dir() else log.parent
+    target = out or home / VEHICLE
+    outputs.check_outputs([target, json_path], [one for one in _logs(log) if one.name != VEHICLE])
     with show.patient(f"reading {log.name}") as tell:
         found = guess(log, tell)
     if target.exists() and not force:
@@ -31,18 +39,44 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
     for note in found.notes:
         show.say(f"  {note}")
     for sensor in found.sensors:
-        channels = ", ".join(f"{c.name} [{c.unit}]" if c.unit else c.name for c in sensor.channels)
-        show.say(f"  {sensor.name}: {channels}")
-    show.say(f"Wrote {target}: {len(found.sensors)} sensors. Check it, then run 'sensorfault detect {log}'.")
-    listed = {
-        sensor.name: [
-            {"channel": c.name, "column": c.column, "unit": c.unit, "watch": c.watch} for c in sensor.channels
-        ]
-        for sensor in found.sensors
-    }
-    show.write_json(json_path, {"vehicle": str(target), "sensors": listed, "notes": list(found.notes)})
+        for line in _lines(sensor):
+            show.say(f"  {line}")
+    show.say(f"Wrote {target}: {len(found.sensors)} sensors.")
+    can = promising.promise(log, found)
+    beside = target.name == VEHICLE and target.parent.resolve() == home.resolve()
+    for sentence in _sentences(can, f"sensorfault detect {log}{'' if beside else f' --vehicle {target}'}"):
+        show.say(sentence)
+    listed = {sensor.name: [_as_dict(channel) for channel in sensor.channels] for sensor in found.sensors}
+    answer = {"vehicle": str(target), "sensors": listed, "notes": list(found.notes), "detect": can.as_dict()}
+    show.write_json(json_path, answer)
 
 
 def _logs(path: Path) -> list[Path]:
     """The file; of a folder what it holds, as an old vehicle.toml there may be replaced."""
     return list(path.iterdir()) if path.is_dir() else [path]
+
+
+def _sentences(can: promising.Promise, command: str) -> Iterator[str]:
+    """What detect can do with the log; `command`: how to run it."""
+    yield from can.pauses
+    if can.refuses:
+        yield f"'{command}' will refuse this log as it is described: {can.refuses}"
+        return
+    yield f"Check what is a guess, then run '{command}', which can do this:"
+    yield from (f"  {sentence}" for sentence in can.checks)
+
+
+def _lines(sensor: "SensorEntry") -> Iterator[str]:
+    """The channels of a sensor; those of one unit and one reason together."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for channel in sensor.channels:
+        alike.setdefault((channel.unit, channel.why), []).append(channel.name)
+    for (unit, why), names in alike.items():
+        what = f"{', '.join(names)} [{unit}]" if unit else f"{', '.join(names)}, without a unit"
+        yield f"{sensor.name}: {what}{f' - {why}' if why else ''}"
+
+
+def _as_dict(channel: "ChannelEntry") -> dict[str, object]:
+    sure = channel.why.partition(":")[0] if channel.unit else ""
+    words = {"channel": channel.name, "column": channel.column, "unit": channel.unit, "watch": channel.watch}
+    return words | {"sure": sure, "why": channel.why}

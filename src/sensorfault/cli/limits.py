@@ -1,6 +1,6 @@
 """Sentences about a model: what it watches, what it leaves out, and what is known of its false alarms."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from sensorfault.core.times import clock
@@ -104,8 +104,13 @@ def _duration(seconds: float) -> str:
 
 def watches(paths: list[str]) -> str:
     """The channels that are watched; of very many the first."""
+    return f"Watches {some(paths)}."
+
+
+def some(paths: Sequence[str]) -> str:
+    """The paths; of very many the first."""
     many = f" and {len(paths) - WATCHED_SHOWN} more" if len(paths) > WATCHED_SHOWN else ""
-    return f"Watches {', '.join(paths[:WATCHED_SHOWN])}{many}."
+    return f"{', '.join(paths[:WATCHED_SHOWN])}{many}"
 
 
 def smallest(model: "Model") -> tuple[str, ...]:
@@ -135,11 +140,15 @@ def not_watched(model: "Model") -> tuple[str, ...]:
     """Parts of the method that this log does not allow; channels that are checked for dropouts only; and why."""
     parts: dict[str, str] = model.summary.get("cannot", {})
     missing = tuple(f"Not running {part}: {reason}" for part, reason in parts.items())
-    reasons: dict[str, str] = model.summary.get("not_watched", {})
+    return (*missing, *dropouts_only(model.summary.get("not_watched", {})))
+
+
+def dropouts_only(reasons: Mapping[str, str]) -> tuple[str, ...]:
+    """The channels that are checked for dropouts only, and why."""
     if not reasons:
-        return missing
+        return ()
     by_reason: dict[str, list[str]] = {}
     for path, reason in reasons.items():
         by_reason.setdefault(reason, []).append(path)
     silent = "; ".join(f"{', '.join(paths)} ({reason})" for reason, paths in by_reason.items())
-    return (*missing, f"Checked for dropouts only: {silent}.")
+    return (f"Checked for dropouts only: {silent}.",)

@@ -15,10 +15,7 @@ json_option = click.option(
     "--json", "json_path", type=click.Path(path_type=str), help="Write the answer as JSON; - for standard output."
 )
 method_option = click.option(
-    "--method",
-    default="relative-conditioning",
-    show_default=True,
-    help="One of 'sensorfault methods'.",
+    "--method", default=None, help="One of 'sensorfault methods'.  [default: relative-conditioning]"
 )
 fitting_method_option = click.option(
     "--method", default="auto", show_default=True, help="One of 'sensorfault methods'."

@@ -26,8 +26,8 @@ def in_parts(path: Path, wanted: bool | None) -> bool:
     return is_long_log(path) if wanted is None else wanted
 
 
-def read_log(path: Path, vehicle: "Path | VehicleFile | None", quiet: bool = False) -> "Log":
-    """Read a log whole. `quiet`: what reading found was printed before.
+def read_log(path: Path, vehicle: Path | None, model: "VehicleFile | None" = None, quiet: bool = False) -> "Log":
+    """Read a log whole. `model`: what a model knows of its columns. `quiet`: what reading found was printed before.
 
     Raises:
         LogError: as `read`, or the log is larger than this machine's memory.
@@ -36,7 +36,7 @@ def read_log(path: Path, vehicle: "Path | VehicleFile | None", quiet: bool = Fal
 
     _check_memory(path)
     with show.patient(f"reading {path.name}") as tell:
-        log = read(path, vehicle, tell=tell)
+        log = read(path, vehicle, tell=tell, model=model)
     if not quiet:
         _print(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.", log.notes)
     return log
@@ -45,9 +45,10 @@ def read_log(path: Path, vehicle: "Path | VehicleFile | None", quiet: bool = Fal
 def read_in(
     parts: bool,
     path: Path,
-    vehicle: "Path | VehicleFile | None",
+    vehicle: Path | None,
     take: "Callable[[Log], None]",
     tell: Callable[[float], None] = lambda share: None,
+    model: "VehicleFile | None" = None,
     quiet: bool = False,
 ) -> "ReadingNotes":
     """Read a log in parts, or else whole as one part. `take` gets each part, `tell` before it the share read so far.
@@ -59,7 +60,7 @@ def read_in(
     from sensorfault.logs.reading_notes import ReadingNotes
 
     if not parts:
-        log = read_log(path, vehicle, quiet)
+        log = read_log(path, vehicle, model, quiet)
         tell(1.0)
         take(log)
         return ReadingNotes(log.notes, log.damage)
@@ -77,7 +78,7 @@ def read_in(
             bar(share)
             tell(share)
 
-        said = read_parts(path, count, vehicle, both)
+        said = read_parts(path, count, vehicle, both, model)
     if not quiet:
         _print(f"{name}: {rows} rows to {clock(end_s)}, read part by part.", said.notes)
     return said

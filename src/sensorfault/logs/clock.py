@@ -15,7 +15,6 @@ from sensorfault.logs.stamps import seconds, time_of, unreadable
 from sensorfault.logs.table import LogError
 from sensorfault.logs.time_units import is_calendar
 
-GAP = 3.0  # a gap is longer than this many usual periods
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
 HOPELESS = 0.2  # share of rows that may be dropped
 _UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: a reading between them is Unix time
@@ -67,8 +66,7 @@ def read_clock(source: Source, file: FileEntry) -> Clock:
         raise LogError(f"{source.path}: one row is no log; name a file with at least two rows at different times.")
     first = float(time[rows[0]])
     kept = (time if len(rows) == len(time) else time[rows]) - first
-    begin = 0.0 if source.begin_s is None else source.begin_s - zero - first
-    period, unsteady = _steadiness(source.name, kept, begin)
+    period, unsteady = _steadiness(source.name, kept)
     return Clock(zero + first, kept, rows, period, (*notes, *jumps, *even, *faults, *unsteady))
 
 
@@ -135,18 +133,12 @@ def _longest_rise(time: np.ndarray) -> np.ndarray:
     return rise
 
 
-def _steadiness(name: str, time: np.ndarray, begin: float) -> tuple[float, list[str]]:
-    """The usual step, and sentences on gaps and jitter with times counted from `begin`."""
+def _steadiness(name: str, time: np.ndarray) -> tuple[float, list[str]]:
+    """The usual step, and a sentence on jitter."""
     step = np.diff(time)
     least, most = float(step.min()), float(step.max())
     period = float(np.median(step))
     notes = []
-    if most > GAP * period:
-        worst = int(np.argmax(step))
-        notes.append(
-            f"{name}: {counted(int((step > GAP * period).sum()), 'gap')} longer than {GAP:g} periods of {period:.4g} "
-            f"s, the longest {most:.4g} s at {time[worst] - begin:.3f} s; left as gaps."
-        )
     if max(most - period, period - least) > _JITTER * period:  # else no step is that far off
         off = float(np.quantile(np.abs(step - period), 0.95))
         if off > _JITTER * period:

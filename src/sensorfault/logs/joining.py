@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from sensorfault.logs.clock import GAP
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.late import Late
 from sensorfault.logs.one_clock import Piece, put_on_one_clock
+from sensorfault.logs.pauses import GAP, Pauses, pauses_of, pauses_said
 from sensorfault.logs.readers.source import Source, Tables, joined
-from sensorfault.logs.reading import log_of
+from sensorfault.logs.reading import log_of, widened
 from sensorfault.logs.reading_notes import ReadingNotes
-from sensorfault.logs.stream import channel_of, read_stream
-from sensorfault.logs.table import Log, LogError, Sensor
+from sensorfault.logs.stream import read_stream
+from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
 
 MARGIN_S = 5.0  # the last seconds of a part go to the next part: rows of a slow topic may still belong to them
@@ -38,6 +38,7 @@ class Joining:
     damage: dict[str, None] = field(default_factory=dict)
     notes: dict[str, None] = field(default_factory=dict)
     more: int = 0
+    pauses: Pauses = field(default_factory=lambda: np.zeros((0, 2)))
 
     def __post_init__(self) -> None:
         self._late = Late(self.entries)
@@ -65,6 +66,8 @@ class Joining:
         if new.any():
             rows = slice(int(np.argmax(new)), len(new) - int(np.argmax(new[::-1])))
             part = replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows], notes=())
+            ticks = np.append(self.handed_s, part.time) if np.isfinite(self.handed_s) else part.time
+            self.pauses = np.concatenate([self.pauses, pauses_of(ticks, log.period_s)])
             self.handed_s = float(part.time[-1])
             self.hand_on(part)
 
@@ -74,8 +77,10 @@ class Joining:
             raise LogError(f"{self.path}: one row is no log; name a file with at least two rows at different times.")
         for note in self._late.notes():
             self._note(note)
-        more = (f"{self.path.name}: {self.more} more notes on its parts.",) if self.more else ()
-        return ReadingNotes(tuple(dict.fromkeys((*self.damage, *first, *self.notes, *more))), tuple(self.damage))
+        more = [f"{self.path.name}: {self.more} more notes on its parts."] if self.more else []
+        paused = pauses_said(self.pauses)
+        notes = dict.fromkeys((*self.damage, *first, *self.notes, *more, *paused))
+        return ReadingNotes(tuple(notes), tuple(self.damage))
 
     def _note(self, note: str) -> None:
         if len(self.notes) < MOST_SAID or note in self.notes:
@@ -105,13 +110,14 @@ class Joining:
         fastest = min(able or streams, key=lambda one: one.pace_s * (_STAYS if one.name == self.ticks else 1))
         self.ticks = fastest.name
         begin_s = fastest.zero_s if self.begin_s is None else self.begin_s
-        clock = put_on_one_clock(streams, piece=Piece(fastest, begin_s, first=self.begin_s is None, last=last))
+        since_s = self.handed_s + (self.known.zero_s or 0.0)
+        clock = put_on_one_clock(streams, piece=Piece(fastest, begin_s, self.begin_s is None, last, since_s))
         self.begin_s = begin_s
         if self.known.zero_s is None:  # the first part begins the log
             self.known = replace(self.known, zero_s=clock.zero_s + float(clock.time[0]))
             present = replace(present, zero_s=self.known.zero_s)
         notes = (*clock.notes, *(note for stream in streams for note in stream.notes))
-        return _widened(log_of(present, streams, clock, notes, ()), self.known)
+        return widened(log_of(present, streams, clock, (), notes), self.known)
 
 
 def _settled_s(log: Log) -> float:
@@ -125,16 +131,3 @@ def _recent(both: Source, now: Source | None) -> Source:
     if now is not None and len(now.frame) > 1:
         return now
     return replace(both, frame=both.frame.tail(2), before=both.before + max(0, len(both.frame) - 2))
-
-
-def _widened(log: Log, known: VehicleFile) -> Log:
-    """The log with all channels of the vehicle; missing ones have no values."""
-    channels = tuple(channel_of(c, s) for s in known.sensors for c in s.channels)
-    if channels == log.channels:
-        return log
-    value, fresh = np.full((len(log), len(channels)), np.nan), np.zeros((len(log), len(channels)), bool)
-    at = [channels.index(channel) for channel in log.channels]
-    value[:, at], fresh[:, at] = log.value, log.fresh
-    have = {sensor.name: sensor for sensor in log.sensors}
-    sensors = tuple(have.get(s.name, Sensor(s.name, s.period_s or float("nan"), s.held)) for s in known.sensors)
-    return replace(log, value=value, fresh=fresh, channels=channels, sensors=sensors)

@@ -34,7 +34,6 @@ class _Table:
     name: str
     column: str
     rows: int = 0
-    begin_s: float | None = None
     last_s: float = -np.inf
     back: _Rows = field(default_factory=_Rows)
     behind: _Rows = field(default_factory=_Rows)
@@ -55,15 +54,13 @@ class Late:
     def _kept(self, source: Source, entry: FileEntry, handed_s: float) -> Source:
         column = entry.time or source.time or ""
         table = self._tables.setdefault(source.table, _Table(source.path, source.name, column))
-        source = replace(source, before=table.rows, begin_s=table.begin_s)
+        source = replace(source, before=table.rows)
         table.rows += len(source.frame)
         if entry.tag is not None or column not in source.frame.columns:
             return source
         if not source.frame[column].dtype.is_numeric() or not source.frame[column].count():
             return source
         zero_s, time = seconds(source, entry)
-        if table.begin_s is None and np.isfinite(zero_s):
-            table.begin_s = zero_s
         time = zero_s + entry.offset_s + time
         late = time <= handed_s
         table.back.add(source, late & (time <= table.last_s))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from sensorfault.logs.clock import GAP
+from sensorfault.logs.pauses import GAP, Pauses, gaps_said, shared_pauses
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.resample import Resample
 from sensorfault.logs.stream import Stream
@@ -30,19 +30,22 @@ class Piece:
     """A piece of a longer log. `ticks`: the stream whose rows are the ticks. `begin_s`: clock at the log's start.
 
     `first`, `last`: whether the piece has the log's first and last rows; else rows outside its ticks are not lost.
+    `since_s`: gaps before this reading of the clock were in the piece before.
     """
 
     ticks: Stream
     begin_s: float
     first: bool
     last: bool
+    since_s: float = -np.inf
 
 
 def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: Piece | None = None) -> OneClock:
     """Put every stream on the ticks of the fastest.
 
     A slower stream's row goes to the first tick at or after its own time; of two rows for one tick the later stays.
-    Where the fastest file has a gap, ticks continue with its usual period, so that the dropout can be detected.
+    Where the fastest file has a gap, ticks continue with its usual period, so that the dropout can be detected; but
+    not in a pause of the whole recording.
     """
     if len(streams) == 1 and resample == "hold":
         (only,) = streams
@@ -51,11 +54,11 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: 
         fastest = min(streams, key=lambda stream: stream.pace_s)
         piece = Piece(fastest, fastest.zero_s, first=True, last=True)
     fastest = piece.ticks
-    at, notes = _filled(piece) if len(streams) > 1 else (fastest.time, [])
+    times = [stream.time + (stream.zero_s - fastest.zero_s) for stream in streams]
+    at, notes = _ticks(streams, times, piece) if len(streams) > 1 else (fastest.time, [])
     shape = (len(at), sum(stream.value.shape[1] for stream in streams))
     value, fresh, begin = np.full(shape, np.nan), np.zeros(shape, bool), 0
-    for stream in streams:
-        time = stream.time + (stream.zero_s - fastest.zero_s)
+    for stream, time in zip(streams, times, strict=True):
         own = slice(begin, begin + stream.value.shape[1])
         if resample == "linear":
             value[:, own], fresh[:, own] = _interpolated(at, time, stream)
@@ -65,11 +68,30 @@ def put_on_one_clock(streams: list[Stream], resample: Resample = "hold", piece: 
     return OneClock(fastest.zero_s, at, value, fresh, tuple(notes))
 
 
-def _filled(piece: Piece) -> tuple[np.ndarray, list[str]]:
-    """The ticks, and new ones inside each gap; none where the clock jumps too far, which a note says."""
-    time, period, begin = piece.ticks.time, piece.ticks.period_s, piece.begin_s - piece.ticks.zero_s
+def _ticks(streams: list[Stream], times: list[np.ndarray], piece: Piece) -> tuple[np.ndarray, list[str]]:
+    """The ticks, and sentences on the gaps of each file. States are written when they change: they know no gaps."""
+    steady = [(stream, time) for stream, time in zip(streams, times, strict=True) if stream.measured]
+    begin, since_s = piece.begin_s - piece.ticks.zero_s, piece.since_s - piece.begin_s
+    pauses = shared_pauses([time for _, time in steady], [one.period_s for one, _ in steady], piece.ticks.period_s)
+    at, notes = _filled(piece, pauses)
+    for one, time in steady:
+        notes += gaps_said(one.name, time - begin, one.period_s, pauses - begin, since_s)
+    return at, notes
+
+
+def _filled(piece: Piece, pauses: Pauses) -> tuple[np.ndarray, list[str]]:
+    """The ticks, one where a pause begins and ends, and new ones inside each gap that is no pause.
+
+    None where the clock jumps too far, which a note says.
+    """
+    period, begin = piece.ticks.period_s, piece.begin_s - piece.ticks.zero_s
+    first, last = piece.ticks.time[[0, -1]]
+    pauses = pauses[(pauses[:, 0] > first - SAME_S) & (pauses[:, 1] < last + SAME_S)]
+    time = _with(piece.ticks.time, pauses.ravel())
     step = np.diff(time)
-    gaps = np.flatnonzero(step > GAP * period)
+    paused = np.zeros(len(step), bool)
+    paused[np.searchsorted(time, pauses[:, 0] - SAME_S)] = True
+    gaps = np.flatnonzero((step > GAP * period) & ~paused)
     count = np.round(step[gaps] / period) - 1
     shortest = np.argsort(count, kind="stable")
     filled = np.zeros(len(gaps), bool)
@@ -84,6 +106,13 @@ def _filled(piece: Piece) -> tuple[np.ndarray, list[str]]:
         for i in gaps[~filled][:1]
     ]
     return np.sort(np.concatenate([time, *new])), notes
+
+
+def _with(time: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """The times and those others, all between the first and the last time, that are none of them."""
+    near = np.minimum(np.searchsorted(time, others - SAME_S), len(time) - 1)
+    new = others[time[near] > others + SAME_S]
+    return np.sort(np.concatenate([time, new])) if len(new) else time
 
 
 def _place(

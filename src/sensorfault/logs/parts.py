@@ -5,14 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from sensorfault.logs.guess import guess
+from sensorfault.logs.describing import describe
 from sensorfault.logs.joining import Joining
-from sensorfault.logs.place import called_after, files_of, find_vehicle, pair_files
+from sensorfault.logs.place import files_of, pair_files
 from sensorfault.logs.readers.beginning import is_long
 from sensorfault.logs.readers.formats import format_of, known_format, read_tables
 from sensorfault.logs.readers.registry import registered
 from sensorfault.logs.readers.source import Ask
-from sensorfault.logs.reading import GUESSED
 from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import Log, LogError
 from sensorfault.logs.vehicle import VehicleFile
@@ -37,13 +36,15 @@ def read_parts(
     take: Callable[[Log], None],
     vehicle: str | Path | VehicleFile | None = None,
     tell: Callable[[float], None] = lambda share: None,
+    model: VehicleFile | None = None,
 ) -> ReadingNotes:
     """Read one file part by part: `take` is called with consecutive pieces of what `read` would return.
 
     Each part is read with the one before it, so that held values and rates are those of the whole log. Two things
     differ: periods and the clock of a recording are measured on a part. Rows older than rows already passed on (a clock
     that goes back, a sensor that is written late) are left out, and a note says so; so is the first row of a sensor
-    slower than the parts. Without a vehicle.toml the columns are guessed from the beginning of the file.
+    slower than the parts. `vehicle` and `model` are as for `read`; without both the columns are guessed from the
+    beginning of the file.
 
     Raises:
         LogError: a format that cannot be read in parts, or a part that cannot be used.
@@ -54,12 +55,12 @@ def read_parts(
         what = f"{len(files)} files" if len(files) > 1 else f"{known_format(files[0]).title}, which is read whole"
         able = ", ".join(sorted((one.title for one in registered() if one.parts), key=str.casefold))
         raise LogError(f"{path}: this is {what}; give one file of a format that can be read part by part: {able}.")
-    described = find_vehicle(path, vehicle)
-    known = called_after(described, path) if described else guess(path, tell)
+    described = describe(path, vehicle, model, tell)
+    known = described.vehicle
     used = {sensor.file for sensor in known.sensors}
     entries = [entry for entry, _ in pair_files(known, path) if entry.name in used]
     names = frozenset(entry.table for entry in entries if entry.table is not None)
     parts = Joining(file, known, entries, take)
     rest = read_tables(file, Ask(names or None, tell, parts.take))
     parts.take(rest, last=True)
-    return parts.said(() if described else (GUESSED, *known.notes))
+    return parts.said(described.notes)

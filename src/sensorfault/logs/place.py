@@ -1,7 +1,7 @@
 """Finds the files of a log, and the entry of the vehicle file that describes each."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sensorfault.core.files import no_input
@@ -46,29 +46,34 @@ def shown(path: Path) -> str:
     return str(path).encode(errors="surrogateescape").decode(errors="backslashreplace")
 
 
-def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> VehicleFile | None:
+@dataclass(frozen=True)
+class Found:
+    """A vehicle file. `sure`: it was given, or is of this log; else it was written for another one in the folder."""
+
+    vehicle: VehicleFile
+    sure: bool = True
+
+
+def find_vehicle(path: Where, vehicle: str | Path | VehicleFile | None) -> Found | None:
     """The given vehicle file, or the one beside the log, or None.
 
-    Beside `drive.csv` that is `drive.vehicle.toml`, or a `vehicle.toml` of one file, whatever its name; of several
-    files, one that names them.
+    Beside `drive.csv` that is `drive.vehicle.toml`, or a `vehicle.toml`.
     """
     if isinstance(vehicle, VehicleFile):
-        return vehicle
+        return Found(vehicle)
     if vehicle is not None:
-        return VehicleFile.read(vehicle)
+        return Found(VehicleFile.read(vehicle))
     files = files_of(path)
     own, beside = files[0].with_suffix(f".{VEHICLE}"), files[0].parent / VEHICLE
     if len(files) == 1 and own.is_file():
-        return VehicleFile.read(own)
+        return Found(VehicleFile.read(own))
     if not beside.is_file():
         return None
     found = VehicleFile.read(beside)
     if isinstance(path, str | Path) and Path(path).is_dir():
-        return found
-    if len(files) == 1 and len({entry.path for entry in found.files}) == 1:
-        return found
+        return Found(found)
     names = {file.name for file in files}
-    return found if all(entry.path is None or Path(entry.path).name in names for entry in found.files) else None
+    return Found(found, all(entry.path is None or Path(entry.path).name in names for entry in found.files))
 
 
 def called_after(vehicle: VehicleFile, path: Where) -> VehicleFile:
@@ -78,6 +83,12 @@ def called_after(vehicle: VehicleFile, path: Where) -> VehicleFile:
     if len(files) > 1 or len(one) > 1 or None in one or Path(str(*one)).name == files[0].name:
         return vehicle
     return replace(vehicle, name=files[0].stem)
+
+
+def named_after(vehicle: VehicleFile, path: Where) -> VehicleFile:
+    """The description under the name of the log's file, or of its folder where it has several."""
+    files = files_of(path)
+    return replace(vehicle, name=files[0].stem if len(files) == 1 else files[0].absolute().parent.stem)
 
 
 def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]]:
@@ -91,7 +102,7 @@ def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]
     """
     files = files_of(path)
     if len({entry.path for entry in vehicle.files}) == 1 and len(files) == 1:
-        return [(entry, files[0]) for entry in vehicle.files]
+        return [(_retagged(entry, files[0]), files[0]) for entry in vehicle.files]
     pairs = []
     for entry in vehicle.files:
         if entry.path is None:
@@ -107,3 +118,11 @@ def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]
             )
         pairs.append((entry, match[0]))
     return pairs
+
+
+def _retagged(entry: FileEntry, file: Path) -> FileEntry:
+    """The entry with the time tag of this file, where it has that of the file that it was written for."""
+    if entry.path is None or entry.tag != f"{Path(entry.path).name}.tag":
+        return entry
+    tag = f"{file.name}.tag"
+    return replace(entry, tag=tag if file.with_name(tag).is_file() or file.name == Path(entry.path).name else None)

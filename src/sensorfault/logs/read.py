@@ -22,6 +22,7 @@ def read(
     vehicle: str | Path | VehicleFile | None = None,
     resample: Resample = "hold",
     tell: Callable[[float], None] = lambda share: None,
+    model: VehicleFile | None = None,
 ) -> Log:
     """Read a log: files of a drive, or a table that is in memory already.
 
@@ -31,12 +32,13 @@ def read(
         path: a file, a folder, or several files of one drive; or a table: a Polars or pandas DataFrame, or a dict
             of columns by name. A table's columns are named, and its time column found, as those of a CSV file.
         vehicle: what the columns are, and their units: a vehicle.toml, or what was read from one. None:
-            `NAME.vehicle.toml` or `vehicle.toml` beside the log; where there is none, and of a table, the columns are
-            guessed, and a note says so.
+            `NAME.vehicle.toml` or `vehicle.toml` beside the log, if the log has the columns that it names; else what
+            `model` says; else, and of a table, the columns are guessed, and a note says so.
         resample: how slower files come to the ticks of the fastest. "hold": a measurement is put on the first tick
             at or after its own time and the other ticks stay empty. "linear": drawn between measurements, which looks
             into the future and smooths faults over; for plots, and for papers that ask for it.
         tell: is called with the share of a large file that has been read, 0 to 1.
+        model: what a fitted model knows of the columns, its `description`; a vehicle file must agree with it.
 
     Returns:
         The log on one clock: T rows, C channels, values in SI, NaN where nothing arrived.
@@ -52,8 +54,8 @@ def read(
     from sensorfault.logs.reading import read_files, read_table
 
     if is_table(path):
-        return read_table(source_of(path), vehicle, resample)
-    return read_files(_where(path), vehicle, resample, tell)
+        return read_table(source_of(path), vehicle or model, resample)
+    return read_files(_where(path), vehicle, resample, tell, model)
 
 
 def _where(path: object) -> Where:

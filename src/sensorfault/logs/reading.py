@@ -7,54 +7,46 @@ from pathlib import Path
 import numpy as np
 
 from sensorfault.logs.clock import is_unix
+from sensorfault.logs.describing import Description, describe
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.guess import guess
 from sensorfault.logs.guess.vehicle import guess_source
 from sensorfault.logs.one_clock import OneClock, put_on_one_clock
-from sensorfault.logs.place import Where, called_after, find_vehicle, pair_files
+from sensorfault.logs.pauses import pauses_said
+from sensorfault.logs.place import Where, pair_files
+from sensorfault.logs.readers.beginning import is_long
 from sensorfault.logs.readers.formats import read_tables, take_table
-from sensorfault.logs.readers.source import Ask, Source
+from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.resample import Resample
-from sensorfault.logs.stream import Stream, read_stream
-from sensorfault.logs.table import Log, LogError
+from sensorfault.logs.stream import Stream, channel_of, read_stream
+from sensorfault.logs.table import Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 
-GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
 GUESSED_TABLE = "No vehicle file: sensors, units and held values are guesses; give vehicle= to say what they are."
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
 def read_files(
-    path: Where, vehicle: str | Path | VehicleFile | None, resample: Resample, tell: Callable[[float], None]
+    path: Where,
+    vehicle: str | Path | VehicleFile | None,
+    resample: Resample,
+    tell: Callable[[float], None],
+    model: VehicleFile | None = None,
 ) -> Log:
     """What `read` says."""
-    described = find_vehicle(path, vehicle)
-    if described is not None and vehicle is None:
-        try:
-            return _read_as(described, path, (), resample, tell)
-        except LogError as error:
-            known = guess(path, tell)
-            notes = (f"The vehicle.toml beside it describes another log ({error}); it is not used.", *known.notes)
-            return _read_as(known, path, (GUESSED, *notes), resample, tell)
-    known = described or guess(path, tell)
-    return _read_as(known, path, () if described else (GUESSED, *known.notes), resample, tell)
-
-
-def _read_as(
-    known: VehicleFile, path: Where, notes: tuple[str, ...], resample: Resample, tell: Callable[[float], None]
-) -> Log:
-    """Read the files as they are described."""
-    known = called_after(known, path)
-    used = {sensor.file for sensor in known.sensors}
+    described = describe(path, vehicle, model, tell)
+    known = described.vehicle
+    used = {sensor.file for sensor in known.sensors} - described.silent
     pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]
-    sources = _sources(pairs, known.asides, bool(notes), tell)
-    streams, known, without = _streams(known, [entry for entry, _ in pairs], sources)
+    sources = _sources(pairs, described, tell)
+    streams, present, without = _streams(known, [entry for entry, _ in pairs], sources)
     clock = put_on_one_clock(streams, resample)
     damage = tuple(dict.fromkeys(one.sentence(source.path) for source in sources.values() for one in source.damage))
-    notes = (*notes, *without)
-    said = [note for stream in streams for note in stream.notes]
-    all_notes = tuple(dict.fromkeys((*damage, *notes, *said, *clock.notes)))
-    return log_of(known, streams, clock, all_notes, damage)
+    said = tuple(note for stream in streams for note in stream.notes)
+    log = log_of(present, streams, clock, damage)
+    silent = replace(
+        known, sensors=tuple(s for s in known.sensors if s in present.sensors or s.file in described.silent)
+    )
+    return with_notes(widened(log, silent), (*damage, *described.notes), (*without, *said, *clock.notes))
 
 
 def _streams(
@@ -88,31 +80,35 @@ def read_table(source: Source, vehicle: str | Path | VehicleFile | None, resampl
     stream = read_stream(source, entry, known.sensors)
     clock = put_on_one_clock([stream], resample)
     notes = () if described else (GUESSED_TABLE, *known.notes)
-    return log_of(known, [stream], clock, tuple(dict.fromkeys((*notes, *stream.notes, *clock.notes))), ())
+    return with_notes(log_of(known, [stream], clock, ()), notes, (*stream.notes, *clock.notes))
+
+
+def with_notes(log: Log, first: tuple[str, ...], notes: tuple[str, ...]) -> Log:
+    """The log with these notes, each once; after the first ones, one on its pauses."""
+    return replace(log, notes=tuple(dict.fromkeys((*first, *pauses_said(log.pauses), *notes))))
 
 
 def _sources(
-    pairs: Sequence[tuple[FileEntry, Path]], asides: frozenset[str], whole: bool, tell: Callable[[float], None]
+    pairs: Sequence[tuple[FileEntry, Path]], described: Description, tell: Callable[[float], None]
 ) -> dict[str, Source]:
-    """Each entry's table; each file is read once. `whole`: all of its tables, as `guess` has just asked for them.
-
-    `asides`: entries whose table may be missing.
-    """
+    """Each entry's table; each file is read once, all of its tables where `guess` has just asked for them."""
     wanted: dict[Path, list[FileEntry]] = {}
     for entry, file in pairs:
         wanted.setdefault(file, []).append(entry)
     found: dict[str, Source] = {}
     for file, entries in wanted.items():
         names = frozenset(entry.table for entry in entries if entry.table is not None)
-        every = whole or any(entry.table is None for entry in entries)
-        tables = read_tables(file, Ask(None if every else names, tell))
+        every = described.guessed or any(entry.table is None for entry in entries)
+        read: Mapping[Path, Tables] = {} if is_long(file) else described.tables
+        tables = read.get(file) or read_tables(file, Ask(None if every else names, tell))
+        asides = described.vehicle.asides
         there = [entry for entry in entries if entry.name not in asides or entry.table in (None, *tables)]
         found |= {entry.name: take_table(file, tables, entry.table) for entry in there}
     return found
 
 
 def log_of(
-    vehicle: VehicleFile, streams: list[Stream], clock: OneClock, notes: tuple[str, ...], damage: tuple[str, ...]
+    vehicle: VehicleFile, streams: list[Stream], clock: OneClock, damage: tuple[str, ...], notes: tuple[str, ...] = ()
 ) -> Log:
     """The log of these streams, its channels in the order of the vehicle file."""
     start = clock.zero_s + float(clock.time[0])
@@ -137,3 +133,16 @@ def log_of(
         steering_ratio=vehicle.steering_ratio,
         description=vehicle,
     )
+
+
+def widened(log: Log, known: VehicleFile) -> Log:
+    """The log with all channels of the vehicle; missing ones have no values."""
+    channels = tuple(channel_of(c, s) for s in known.sensors for c in s.channels)
+    if channels == log.channels:
+        return log
+    value, fresh = np.full((len(log), len(channels)), np.nan), np.zeros((len(log), len(channels)), bool)
+    at = [channels.index(channel) for channel in log.channels]
+    value[:, at], fresh[:, at] = log.value, log.fresh
+    have = {sensor.name: sensor for sensor in log.sensors}
+    sensors = tuple(have.get(s.name, Sensor(s.name, s.period_s or float("nan"), s.held)) for s in known.sensors)
+    return replace(log, value=value, fresh=fresh, channels=channels, sensors=sensors, description=known)

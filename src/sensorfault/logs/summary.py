@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from sensorfault.logs.clock import GAP
 from sensorfault.logs.held import any_of
+from sensorfault.logs.pauses import GAP, Pauses, pauses_of, recorded
 from sensorfault.logs.table import Log
 
 STEADY = 1.5  # a step up to so many usual ones has no measurement missing in it
@@ -18,8 +18,9 @@ class SensorSummary:
     """One sensor. Rate in new measurements per second while none is missing.
 
     `held`: share of its values that repeat the last one.
-    `gaps`: pauses longer than three usual periods; the longest lasts `longest_gap_s` from `gap_at_s`. `missing`: share
-    of the ticks without any value. Unknown numbers are None, as the rate of a sensor with fewer than two measurements.
+    `gaps`: times without a measurement longer than three usual periods, pauses of the whole recording left out; the
+    longest lasts `longest_gap_s` from `gap_at_s`. `missing`: share of the ticks without any value. Unknown numbers are
+    None, as the rate of a sensor with fewer than two measurements.
     """
 
     name: str
@@ -42,11 +43,12 @@ def summarise(log: Log) -> tuple[SensorSummary, ...]:
 
 
 class Summing:
-    """Sums up consecutive parts of one log. `first`: the first of them. `rows`, `end_s`: of all so far."""
+    """Sums up consecutive parts of one log. `first`: the first of them. `rows`, `end_s`, `pauses`: of all so far."""
 
     def __init__(self) -> None:
         self.first: Log | None = None
         self.rows, self.end_s = 0, 0.0
+        self.pauses: Pauses = np.zeros((0, 2))
         self._sums: list[_Sum] = []
 
     def take(self, part: Log) -> None:
@@ -54,8 +56,11 @@ class Summing:
         if self.first is None:
             self.first = part
             self._sums = [_Sum(sensor.name, part) for sensor in part.sensors]
+        ticks = np.append(self.end_s, part.time) if self.rows else part.time
+        self.pauses = np.concatenate([self.pauses, pauses_of(ticks, self.first.period_s)])
+        time = recorded(part.time, self.pauses)
         for one in self._sums:
-            one.take(part)
+            one.take(part, time)
         self.rows += len(part)
         self.end_s = float(part.time[-1]) if len(part) else self.end_s
 
@@ -77,22 +82,23 @@ class _Sum:
         self._early: list[Float[np.ndarray, " k"]] = []  # steps before the usual one is known
         self._usual_s: float | None = None
         self._longest_s, self._longest_at_s = 0.0, np.nan
-        self._last_s = np.nan
+        self._last: Float[np.ndarray, "1 2"] = np.zeros((0, 2))
 
-    def take(self, part: Log) -> None:
+    def take(self, part: Log, recorded_s: Float[np.ndarray, " T"]) -> None:
+        """`recorded_s`: the time of each tick without the pauses before it."""
         value, fresh = part.value[:, self._columns], part.fresh[:, self._columns]
         self._rows += len(part)
         self._present += int(any_of(np.isfinite(value)).sum())
-        at = part.time[any_of(fresh)]
-        if not len(at):
+        new = any_of(fresh)
+        if not new.any():
             return
-        self._measurements += len(at)
-        begin = at if np.isnan(self._last_s) else np.concatenate([[self._last_s], at])
-        self._last_s = float(at[-1])
-        steps = np.diff(begin)
+        self._measurements += int(new.sum())
+        at = np.concatenate([self._last, np.column_stack([recorded_s[new], part.time[new]])])
+        self._last = at[-1:]
+        steps = np.diff(at[:, 0])
         if len(steps) and steps.max() > self._longest_s:
             worst = int(np.argmax(steps))
-            self._longest_s, self._longest_at_s = float(steps[worst]), float(begin[worst])
+            self._longest_s, self._longest_at_s = float(steps[worst]), float(at[worst, 1])
         if self._usual_s is not None:
             self._count(steps, self._usual_s)
             return

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Int
 from sensorfault.core import html
 from sensorfault.core.extras import require
 from sensorfault.core.times import clock
+from sensorfault.logs.pauses import Pauses, pauses_of
 from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
 from sensorfault.logs.units import from_si
 
@@ -73,6 +74,7 @@ class Log:
     `block`: what a residual generator takes besides, arrays with an entry for each tick (see `epochs`).
     `description`: what its columns were read as, by a vehicle.toml or a guess; None for a log that was made by hand.
     `damage`: those of them that say where a file could not be read, and what was read all the same.
+    `description`: what its columns were read as, by a vehicle.toml, a model or a guess; None of a log made by hand.
     """
 
     time: Float[np.ndarray, " T"]
@@ -132,6 +134,14 @@ class Log:
     def period_s(self) -> float:
         """The usual time between two ticks [s]."""
         return float(np.median(np.diff(self.time))) if len(self) > 1 else float("nan")
+
+    @property
+    def pauses(self) -> Pauses:
+        """Pauses of the recording, start and end [s] of each: the clock steps by more than three of its periods.
+
+        No sensor has a value there, and nothing is said of any.
+        """
+        return pauses_of(self.time, self.period_s)
 
     def index(self, path: str) -> int:
         """Column of the channel `sensor.channel`; the channel's name alone is enough where it is unique.

@@ -48,7 +48,7 @@ from sensorfault.logs.validity import Validity
 
 @dataclass(frozen=True)
 class VehicleFile:
-    """A vehicle's files, sensors and channels."""
+    """A vehicle's files, sensors and channels. `where`: what says so, in messages. `guessed`: nobody has checked it."""
 
     name: str
     files: tuple[FileEntry, ...]
@@ -58,6 +58,8 @@ class VehicleFile:
     wheelbase_m: float | None = None
     steering_ratio: float | None = None
     notes: tuple[str, ...] = field(default=(), compare=False)
+    where: str = field(default="the vehicle file", compare=False)
+    guessed: bool = field(default=False, compare=False)
 
     @classmethod
     def read(cls, path: Path | str) -> "VehicleFile":
@@ -94,16 +96,6 @@ class VehicleFile:
         needed = {s.file for s in self.sensors if any(c.kind not in SAID for c in s.channels)}
         return frozenset(file.name for file in self.files) - needed
 
-    def conflict(self, other: "VehicleFile") -> str:
-        """The first column that the two describe in another way, in words; empty if they agree."""
-        mine = {(s.file, c.column): (s.name, c.name, c.unit) for s in self.sensors for c in s.channels}
-        for sensor in other.sensors:
-            for c in sensor.channels:
-                here, there = mine.get((sensor.file, c.column)), (sensor.name, c.name, c.unit)
-                if here is not None and here != there:
-                    return f"column '{c.column}' is {_spoken(here)} in one and {_spoken(there)} in the other"
-        return ""
-
     def to_toml(self) -> str:
         """The TOML text, with the reason of each guess as a comment; it parses back to the same."""
         lines = [*(comment(note) for note in self.notes), "[vehicle]", f"name = {quote(self.name)}"]
@@ -118,11 +110,6 @@ class VehicleFile:
         for sensor in self.sensors:
             lines += ["", *sensor_lines(sensor, single=len(self.files) == 1)]
         return "\n".join(lines) + "\n"
-
-
-def _spoken(channel: tuple[str, str, str]) -> str:
-    sensor, name, unit = channel
-    return f"{sensor}.{name} [{unit}]" if unit else f"{sensor}.{name}"
 
 
 def _vehicle(top: TomlTable, where: str) -> VehicleFile:
@@ -145,6 +132,7 @@ def _vehicle(top: TomlTable, where: str) -> VehicleFile:
         zero_s=head.number("zero_s"),
         wheelbase_m=sizes["wheelbase_m"],
         steering_ratio=sizes["steering_ratio"],
+        where=where,
     )
 
 

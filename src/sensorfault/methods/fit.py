@@ -11,7 +11,8 @@ from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.catalog import DEFAULT, recipe
 from sensorfault.numerics.poisson import rate_below
 from sensorfault.relations.events import METHOD as AUTO
-from sensorfault.runtime.compared import Comparison, NothingToCompare, comparison_of, described
+from sensorfault.runtime.compared import Comparison, NothingToCompare, comparison_of
+from sensorfault.runtime.described import described
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
 from sensorfault.training.session import Session
@@ -93,11 +94,8 @@ def fit(
         raise LogError(f"held_out is {held_out:g}, which leaves fewer than two rows of {log.name}; give more, or 0.")
     training, suspects = leave_out(log.between(end_s=cut) if held_out else log)
     model = recipe(method).build(training, seed, session)
-    summary = (
-        model.summary
-        | described(log)
-        | {"seed": seed, "training_suspects": [suspect.as_dict() for suspect in suspects]}
-    )
+    left_out = [suspect.as_dict() for suspect in suspects]
+    summary = model.summary | described(log) | {"seed": seed, "training_suspects": left_out}
     if held_out:
         session.progress("testing on the held-out part")
         alarms = len(detect(model, unseen).events)

@@ -1,6 +1,8 @@
 """The default method on a log, or on its consecutive parts: events, verdicts, and what could not be compared."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,11 +12,13 @@ from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import SAID, Channel, Log, LogError, Sensor
+from sensorfault.logs.vehicle import VehicleFile
 from sensorfault.relations.events import METHOD, events_of, sensor_of
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
 from sensorfault.runtime import show
 from sensorfault.runtime.coverage import Coverage
+from sensorfault.runtime.described import check, described, known, sample
 from sensorfault.runtime.result import Detection, Trace
 
 NO_LEVELS = frozenset({"attitude", "gnss.course"})
@@ -49,6 +53,25 @@ class Comparison:
         """Paths of the channels, in the order of a live sample."""
         return tuple(channel.path for channel in self.channels)
 
+    @cached_property
+    def description(self) -> VehicleFile | None:
+        """What the columns of the log were read as that it was fitted on; give it to `read` as `model`. None: unknown.
+
+        Raises:
+            LogError: what the model file says of it cannot be read.
+        """
+        return known(self.summary, None, self.sensors)
+
+    def sample(self, row: Mapping[str, float]) -> Float[np.ndarray, " C"]:
+        """One row of the log's columns, by name and in the units of the log, as the values of a live sample [SI].
+
+        A column that is not in the row has no value.
+
+        Raises:
+            LogError: the model does not know the columns, or none of them is in the row.
+        """
+        return sample(self.description, self.inputs, row)
+
     def __repr__(self) -> str:
         return f"<Comparison {show.comparison_line(self.sensors, self.summary)}>"
 
@@ -72,11 +95,6 @@ def comparison_of(*logs: Log) -> Comparison:
     return Comparison(learned, summary, logs[0].channels, logs[0].sensors)
 
 
-def described(log: Log) -> dict[str, str]:
-    """For the summary of a model: what the columns of its training log were read as."""
-    return {"description": log.description.to_toml()} if log.description is not None else {}
-
-
 def compare(log: Log, comparison: Comparison | None = None) -> Detection:
     """Judge a log by what its sensors say of each other. Without a fitted comparison the limits are the log's own.
 
@@ -85,6 +103,7 @@ def compare(log: Log, comparison: Comparison | None = None) -> Detection:
     """
     if not len(log):
         raise LogError(f"{log.name} has no rows; give a log that has some.")
+    check(log, comparison.description if comparison else None)
     log = log.measurements()
     found = _detection(log, judge(log, comparison.learned if comparison else None))
     assert found.coverage is not None
@@ -106,6 +125,7 @@ class ComparingDetector:
 
     def __init__(self, comparison: Comparison | None = None, see: Any = None) -> None:
         self._learned = comparison.learned if comparison else None
+        self._description = comparison.description if comparison else None
         self._see = see
         self._tail: Log | None = None
         self._first: Log | None = None
@@ -115,6 +135,7 @@ class ComparingDetector:
 
     def take(self, part: Log, share: float = 1.0) -> None:
         """Judge the next part. `share`: how much of all that is judged it is."""
+        check(part, self._description)
         part = part.measurements()
         log = part if self._tail is None else _joined(self._tail, part)
         judged = judge(log, self._learned)

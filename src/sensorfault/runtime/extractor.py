@@ -60,7 +60,8 @@ class EventExtractor:
         arrays = _arrays(result)
         for i in self._interesting(log.time, marked):
             now = StepResult(*(array[i] for array in arrays))
-            self._ended += self._tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
+            ended = self._tracker.push(float(log.time[i]), float(gap_s[i]), log.value[i], now)
+            self._ended += [event for event in ended if not _is_pause(event)]
 
     def _interesting(self, time: Float[np.ndarray, " T"], marked: Bool[np.ndarray, " T"]) -> Any:
         """Rows the tracker needs: the first, the marked ones, those in QUIET_S after a marked one, and one more."""
@@ -70,6 +71,11 @@ class EventExtractor:
         near[1:] |= near[:-1]
         near[0] = True
         return np.flatnonzero(near)
+
+
+def _is_pause(event: Event) -> bool:
+    """Whether nothing at all was recorded for a while: the log itself says so, once (`Log.pauses`)."""
+    return event.kind == "missing" and event.sensor is None
 
 
 def _arrays(result: Replayed) -> list[Any]:

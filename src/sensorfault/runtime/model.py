@@ -1,6 +1,8 @@
 """A fitted monitor, with the names of its channels, sensors and tests."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,8 @@ from sensorfault.core.monitor import Monitor
 from sensorfault.logs.epochs import Epoch, Framing
 from sensorfault.logs.rates import MISSED
 from sensorfault.logs.table import Channel, Log, LogError, Sensor
-from sensorfault.runtime import show
+from sensorfault.logs.vehicle import VehicleFile
+from sensorfault.runtime import described, show
 
 MOTION = "motion"  # in place of a channel: this test judges the motion of the vehicle
 TOGETHER = ", "  # joins channels that one test accuses together
@@ -52,6 +55,17 @@ class Model:
         title = show.model_line(self.method, self.sensors, self.tick_s, self.summary)
         return show.model_html(title, self.channels, self.sensors, self.watched, self.summary)
 
+    @cached_property
+    def description(self) -> VehicleFile | None:
+        """What the columns of the log were read as that it was fitted on; give it to `read` as `model`.
+
+        None if the log was made by hand, or the model was written by a version that did not keep it.
+
+        Raises:
+            LogError: what the model file says of it cannot be read.
+        """
+        return described.known(self.summary, self.inputs, self.sensors)
+
     @property
     def period_s(self) -> Float[np.ndarray, " C"]:
         """The usual time between two measurements of each channel [s]."""
@@ -73,12 +87,24 @@ class Model:
         """Paths of the channels to read, in the order of a live sample."""
         return self.framing.inputs if self.framing else tuple(channel.path for channel in self.channels)
 
+    def sample(self, row: Mapping[str, float]) -> Float[np.ndarray, " C"]:
+        """One row of the log's columns, by name and in the units of the log, as the values of a live sample [SI].
+
+        A column that is not in the row has no value. `live.push(time_s, model.sample({"gx_deg": 3.1, ...}))`
+
+        Raises:
+            LogError: the model does not know the columns, or none of them is in the row.
+        """
+        return described.sample(self.description, self.inputs, row)
+
     def take(self, log: Log) -> Log:
         """The log with only the channels of this model, in the model's order; as epochs, if the model judges those.
 
         Raises:
-            LogError: a channel is missing, or the log is sampled at another rate than the model was fitted at.
+            LogError: a channel is missing; the log is sampled at another rate than the model was fitted at; or its
+                columns were read as something else.
         """
+        described.check(log, self.description)
         if self.framing:
             framed = isinstance(log.block, Epoch) and log.channels == self.channels
             return log if framed else self.framing.frame(log)

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,12 @@ import numpy as np
 from sensorfault.core.expect import expect_path
 from sensorfault.core.files import appearing
 from sensorfault.logs.table import Channel, LogError, Sensor
+from sensorfault.logs.vehicle import VehicleFile
 from sensorfault.relations.axes import Mounting
 from sensorfault.relations.events import METHOD
 from sensorfault.relations.limits import Learned
 from sensorfault.runtime.compared import Comparison
+from sensorfault.runtime.described import known
 
 KEY, FORMAT = "sensorfault", 1
 LONGEST = 1 << 26  # bytes of a header; more is no model of ours
@@ -47,6 +50,26 @@ def header_of(path: Path) -> dict[str, Any]:
     if not isinstance(header, dict):
         raise refused
     return {**header, "digest": meta.get("digest"), "text": meta[KEY]}
+
+
+def known_in(path: Path) -> VehicleFile | None:
+    """What a model file knows of the columns of its logs, all of them; read without its arrays.
+
+    Raises:
+        ModelError: there is no such file, or it is no model.
+        LogError: what it says of the columns cannot be read.
+    """
+    header = header_of(path)
+    summary = header.get("summary")
+    if not isinstance(summary, dict) or not isinstance(header.get("channels"), list):
+        return None
+    whole = header.get("framing") is not None or header.get("method") == METHOD
+    try:
+        inputs = None if whole else [Channel(**channel).path for channel in header["channels"]]
+        found = known(summary, inputs, [Sensor(**sensor) for sensor in header.get("sensors", ())])
+    except TypeError:  # loading it says more
+        return None
+    return replace(found, where=f"the model {path}") if found is not None else None
 
 
 def method_of(path: Path) -> str:

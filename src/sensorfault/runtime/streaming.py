@@ -30,6 +30,8 @@ def detect_file(
 ) -> Detection:
     """The events that `detect` finds in the same file, in memory that does not grow with the file.
 
+    The columns are read as the model knows them.
+
     Args:
         model: what judges the log; or what fits it, see `detect_parts`.
         path: the file, of a format that `read_parts` reads.
@@ -47,7 +49,7 @@ def detect_file(
             received(share)
             tell(share)
 
-        return read_parts(path, take, vehicle, both)
+        return read_parts(path, take, vehicle, both, model.description if isinstance(model, Model) else None)
 
     return detect_parts(parts, model, see, learn)
 

@@ -41,7 +41,6 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
         LogError: a column of numbers has a cell that is none.
     """
     columns, left_out = [], []
-    beacons = beacons_of([read_name(name) for name in source.frame.columns])
     dotted = are_dotted(source.frame.columns)
     for name in source.frame.columns:
         if name == time:
@@ -63,7 +62,7 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
                 left_out.append((name, "holds text"))
                 continue
             column = Column(name, meaning, np.where(np.isinf(value), np.nan, value), device)
-            reason = _no_measurement(column, (device or meaning.stem) in beacons)
+            reason = _no_measurement(column)
             if reason:
                 left_out.append((name, reason))
             else:
@@ -80,12 +79,14 @@ def beacons_of(meanings: Iterable[Meaning]) -> set[str]:
     return {stem for stem, found in kinds.items() if stem and {"range", "position"} <= found}
 
 
-def _no_measurement(column: Column, of_beacon: bool) -> str:
-    """Why a column is not a measurement; a beacon's position is one even if it never changes."""
+def _no_measurement(column: Column) -> str:
+    """Why a column is not a measurement; one whose name says that it is a sensor's may be frozen for the whole log."""
     known = column.value[np.isfinite(column.value)]
     if not len(known):
         return "holds no value at all"
-    if (known == known[0]).all() and not (of_beacon and column.meaning.kind in BEACON):
+    if len(known) == 1:
+        return "holds one value"
+    if (known == known[0]).all() and not column.meaning.kind:
         return "constant"
     if column.meaning.kind == "temperature":
         return "a temperature, not a measurement of motion"

@@ -95,10 +95,10 @@ def _blind(column: Column) -> str:
 
 
 def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray | None) -> tuple[str, str]:
-    """Unit and reason."""
+    """Unit, and how sure it is with the reason: "sure", "likely" or "a guess"."""
     meaning, value, kind = column.meaning, column.value, _kind(column)
     if meaning.unit:
-        return meaning.unit, "unit in its name or its format"
+        return meaning.unit, "sure: unit in its name or its format"
     match kind:
         case "accelerometer":
             return units.acceleration_unit(group)
@@ -113,7 +113,7 @@ def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray
         case "speed" | "wheels":
             return units.speed_unit(value, clock.time, place_rad)
     unit = _USUAL_UNIT.get(kind, "")
-    return unit, f"the usual unit of a {kind}" if unit else ""
+    return unit, f"a guess: the usual unit of a {kind}" if unit else ""
 
 
 def _place_rad(columns: Sequence[Column]) -> np.ndarray | None:

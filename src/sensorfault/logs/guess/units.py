@@ -1,4 +1,4 @@
-"""Units from values, where the name has none."""
+"""Units from values, where the name has none. Each reason begins with how sure it is: "likely", or "a guess"."""
 
 import numpy as np
 from jaxtyping import Float
@@ -10,6 +10,7 @@ _TURN = {"rad": 2 * np.pi, "deg": 360.0}
 _SPEEDS = {"m/s": 1.0, "km/h": 3.6, "kn": 1 / KNOT}
 _FAST_RAD_S = 3.5  # a vehicle that turns faster than this one time in twenty does not exist; in deg/s it is common
 _FAST_M_S = 45.0
+_CERTAINLY = 3.0  # a value this far beyond what the other unit allows makes one likely
 
 
 def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
@@ -21,7 +22,7 @@ def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     )
     for unit, gravity in (("m/s^2", STANDARD_GRAVITY), ("g", 1.0), ("mg", 1000.0)):
         if 0.8 < length / gravity < 1.25:
-            return unit, f"its usual length {length:.4g} is gravity in {unit}"
+            return unit, f"likely: its usual length {length:.4g} is gravity in {unit}"
     return "m/s^2", f"a guess: in no unit is its usual length {length:.4g} gravity"
 
 
@@ -30,14 +31,16 @@ def rate_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     known = value[np.isfinite(value).any(axis=1)]
     fast = float(np.quantile(np.nanmax(np.abs(known), axis=1), 0.95))
     unit = "deg/s" if fast > _FAST_RAD_S else "rad/s"
-    return unit, f"its 95th percentile is {fast:.3g}; rad/s up to {_FAST_RAD_S:g}, else deg/s"
+    sure = "likely" if fast > _CERTAINLY * _FAST_RAD_S else "a guess"
+    return unit, f"{sure}: its 95th percentile is {fast:.3g}; rad/s up to {_FAST_RAD_S:g}, else deg/s"
 
 
 def angle_unit(value: Float[np.ndarray, " T"]) -> tuple[str, str]:
     """By the largest: more than one turn in rad is deg."""
     largest = float(np.nanmax(np.abs(value)))
     unit = "deg" if largest > _TURN["rad"] + 0.01 else "rad"
-    return unit, f"its largest is {largest:.4g}; rad up to one turn, else deg"
+    sure = "likely" if largest > _CERTAINLY * _TURN["rad"] else "a guess"
+    return unit, f"{sure}: its largest is {largest:.4g}; rad up to one turn, else deg"
 
 
 def wraps(value: Float[np.ndarray, " T"], unit: str) -> bool:
@@ -49,13 +52,15 @@ def wraps(value: Float[np.ndarray, " T"], unit: str) -> bool:
 def position_unit(value: Float[np.ndarray, " T"]) -> tuple[str, str]:
     """Latitude or longitude by size: whole numbers of 1e-7 deg, else deg."""
     largest = float(np.nanmax(np.abs(value)))
-    return ("1e-7deg", "too large for deg") if largest > 360 else ("deg", "the usual unit of a latitude or longitude")
+    return (
+        ("1e-7deg", "likely: too large for deg") if largest > 360 else ("deg", "likely: the usual unit of a position")
+    )
 
 
 def height_unit(value: Float[np.ndarray, " T"]) -> tuple[str, str]:
     """By size: no vehicle here is above 50 km."""
     largest = float(np.nanmax(np.abs(value)))
-    return ("mm", "too large for m") if largest > 50_000 else ("m", "the usual unit of a height")
+    return ("mm", "likely: too large for m") if largest > 50_000 else ("m", "a guess: the usual unit of a height")
 
 
 def speed_unit(
@@ -73,7 +78,7 @@ def speed_unit(
         ratio = moved
         unit = min(_SPEEDS, key=lambda name: abs(np.log(ratio / _SPEEDS[name])))
         if abs(np.log(ratio / _SPEEDS[unit])) < 0.2:
-            return unit, f"it is {ratio:.2f} times as fast as the position moves in m/s"
+            return unit, f"likely: it is {ratio:.2f} times as fast as the position moves in m/s"
     largest = float(np.nanmax(np.abs(speed)))
     if largest > _FAST_M_S:
         return "km/h", f"a guess: its largest is {largest:.3g}, too fast for most vehicles in m/s"

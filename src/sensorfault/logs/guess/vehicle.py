@@ -49,7 +49,8 @@ def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
     name = stem_of(files[0]) if len(files) == 1 else files[0].absolute().parent.stem
-    return VehicleFile(name, tuple(entries), tuple(sensors), notes=(*notes, *raw, *_untied(guesses), *_missed(guesses)))
+    said = (*notes, *raw, *_untied(guesses), *_missed(guesses))
+    return VehicleFile(name, tuple(entries), tuple(sensors), notes=said, where="a guess", guessed=True)
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -60,9 +61,9 @@ def guess_source(source: Source) -> VehicleFile:
         LogError: no column rises like a time, or none measures anything.
     """
     one = guess_table(source, None)
-    return VehicleFile(
-        source.path.stem, (replace(one.file, name="log"),), tuple(one.sensors), notes=tuple(_missed([one]))
-    )
+    file = replace(one.file, name="log")
+    said = tuple(_missed([one]))
+    return VehicleFile(source.path.stem, (file,), tuple(one.sensors), notes=said, where="a guess", guessed=True)
 
 
 def _refuse_several_drives(guesses: list[Guess]) -> None:

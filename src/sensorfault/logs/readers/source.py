@@ -55,7 +55,7 @@ class Source:
     `lines`: row -> line, where rows were left out between them; else row n came from line `first_line` + n.
     `units`: the unit of each column whose format says it, spelled as in units.py.
     `times`: the file of its time column, where that is another file.
-    `before`: rows of the table in parts of the file that were read before this one; `begin_s`: its first reading there.
+    `before`: rows of the table in parts of the file that were read before this one.
     `notes` and `damage` are those of the whole file, the same for each of its tables.
     """
 
@@ -71,7 +71,6 @@ class Source:
     table: str = ""
     times: Path | None = None
     before: int = 0
-    begin_s: float | None = None
     lines: Callable[[int], int] | None = None
 
     @property

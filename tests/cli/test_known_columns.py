@@ -1,0 +1,112 @@
+"""A model knows the columns of its logs; init says what detect will be able to do."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fitted
+from cli.conftest import Run, write_csv
+from sensorfault.logs import write
+from sensorfault.methods.catalog import DEFAULT
+
+
+def calm(path: str = "calm.csv") -> Path:
+    """A drive so calm that its deg/s might be rad/s; the gyro is tilted by nothing else."""
+    rig = fitted.rig().between(120.0, 150.0)
+    value = rig.value.copy()
+    value[:, :3] *= 0.05
+    return write_csv(Path(path), fitted.shifted(rig, value))
+
+
+def test_the_quick_start_on_a_calm_drive(run: Run, drive: Path) -> None:
+    assert run("init", drive).code == 0
+    assert run("fit", drive, "--out", "car.sf").code == 0
+    for _ in range(2):
+        said = run("detect", calm(), "--model", "car.sf")
+        assert (said.code, said.out) == (0, ""), said.err
+        Path("vehicle.toml").unlink(missing_ok=True)
+    assert "Columns are read as the model car.sf knows them." in said.err
+    said = run("evaluate", calm(), "--model", "car.sf", "--truth", truth(), "--json", "-")
+    assert json.loads(said.out)["false_alarms"] == []
+    assert "Columns are read as the model car.sf knows them." in said.err
+    assert "0 fault events" in run("report", calm(), "--model", "car.sf").err
+
+
+def truth() -> Path:
+    path = Path("none.truth.json")
+    path.write_text("[]")
+    return path
+
+
+@pytest.mark.parametrize("verb", ["detect", "report", "evaluate"])
+def test_a_vehicle_file_that_says_otherwise_is_refused(run: Run, drive: Path, car: Path, verb: str) -> None:
+    run("init", drive, "--out", "mine.toml")
+    text = Path("mine.toml").read_text()
+    Path("mine.toml").write_text(text.replace('column = "gyro_y", unit = "deg/s"', 'column = "gyro_y", unit = "rad/s"'))
+    said = run(verb, drive, "--model", car, "--vehicle", "mine.toml")
+    assert said.code == 2
+    assert (
+        "by mine.toml the column 'gyro_y' is gyro.y [rad/s], by the model car.sensorfault it is gyro.y [deg/s]; correct"
+    ) in said.err
+
+
+@pytest.mark.parametrize("verb", ["detect", "report", "evaluate"])
+def test_a_method_beside_a_model_of_another_is_refused(run: Run, drive: Path, car: Path, verb: str) -> None:
+    said = run(verb, drive, "--model", car, "--method", "pca")
+    assert said.code == 2
+    assert f"car.sensorfault is a model of {DEFAULT}, not of pca; leave out --method, or --model." in said.err
+    if verb == "detect":
+        assert run(verb, drive, "--model", car, "--method", DEFAULT).code == 0
+
+
+def test_init_says_how_sure_it_is(run: Run) -> None:
+    said = run("init", calm(), "--json", "-")
+    gyro, acc = (json.loads(said.out)["sensors"][name][0] for name in ("gyro", "accelerometer"))
+    assert (gyro["sure"], acc["sure"]) == ("a guess", "likely")
+    assert "  gyro: x, y, z [rad/s] - a guess: its 95th percentile is" in said.err
+    assert "  accelerometer: x, y, z [m/s^2] - likely: its usual length" in said.err
+    assert "# a guess: its 95th percentile is" in Path("vehicle.toml").read_text()
+
+
+def test_init_promises_what_detect_then_does(run: Run, drive: Path) -> None:
+    promised = json.loads(run("init", drive, "--json", "-").out)["detect"]
+    assert promised["refuses"] is None
+    made = json.loads(run("fit", drive, "--held-out", 0, "--until", 40, "--json", "-").out)
+    assert promised["values"] == made["watched"]
+    assert promised["dropouts_only"] == made["not_watched"]
+    assert run("detect", drive).code == 0
+
+
+@pytest.mark.parametrize("what", ["only a position", "never together"])
+def test_init_says_that_detect_will_refuse(run: Run, what: str) -> None:
+    rig = fitted.rig().between(end_s=20.0)
+    value = rig.value.copy()
+    if what == "only a position":
+        value[:, :6] = np.nan
+    if what == "never together":
+        value[::2, :3], value[1::2, 3:6] = np.nan, np.nan
+    path = write_csv(Path("odd.csv"), fitted.shifted(rig, value))
+    said = run("init", path)
+    assert said.code == 0
+    refused = run("detect", path)
+    assert refused.code == 2
+    reason = refused.err.strip().splitlines()[-1].removeprefix("sensorfault: ")
+    assert f"'sensorfault detect odd.csv' will refuse this log as it is described: {reason}" in said.err
+
+
+def test_init_names_the_file_that_it_wrote(run: Run, drive: Path) -> None:
+    assert "'sensorfault detect drive.csv --vehicle car.toml'" in run("init", drive, "--out", "car.toml").err
+    assert "'sensorfault detect drive.csv'" in run("init", drive).err
+
+
+def test_a_pause_is_said_once(run: Run) -> None:
+    rig = fitted.rig().between(end_s=80.0)
+    write(rig.without(np.arange(2500, 2700)), "paused.csv")
+    said = run("detect", "paused.csv")
+    assert (said.code, said.out) == (0, ""), said.err
+    assert said.err.count("The recording has 1 gap, 4.02 s in all, the longest 4.02 s at 49.980 s") == 1
+    result = json.loads(run("info", "paused.csv", "--json", "-").out)
+    assert result["pauses"] == [[pytest.approx(49.98), pytest.approx(54.0)]]
+    assert [sensor["gaps"] for sensor in result["sensors"]] == [0, 0, 0]
