@@ -62,6 +62,8 @@ def _inertial(
 
     if choice.path is not None:
         raise nothing
+    if nothing.alone is not None and not nothing.inertial:
+        return nothing.alone
     parts = reading.in_parts(path, by_parts)
     quiet = partial(reading.read_in, parts, path, vehicle, quiet=True)
     try:

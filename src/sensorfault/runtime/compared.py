@@ -16,6 +16,7 @@ from sensorfault.logs.vehicle import VehicleFile
 from sensorfault.relations.events import METHOD, events_of, sensor_of
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
+from sensorfault.relations.signals import Signal
 from sensorfault.runtime import show
 from sensorfault.runtime.coverage import Coverage
 from sensorfault.runtime.described import check, described, known, sample
@@ -27,9 +28,14 @@ OVERLAP_S = 70.0  # a part is judged with the end of the part before it, so that
 
 
 class NothingToCompare(LogError):
-    """No two sensors of a log say the same. `alone`: what checking each by itself found, if that was possible."""
+    """No two sensors of a log say the same.
+
+    `alone`: what checking each by itself found, if that was possible. `inertial`: whether it has an inertial unit, or
+    no sensor that is known at all, so that a method for single channels may be tried.
+    """
 
     alone: "Detection | None" = None
+    inertial = True
 
 
 @dataclass(frozen=True)
@@ -141,7 +147,7 @@ class ComparingDetector:
         judged = judge(log, self._learned)
         self._learned = self._learned or judged.learned
         found = _detection(log, judged).between(float(part.time[0]))
-        self._check(log, found)
+        self._check(log, found, judged.signals)
         self._add(found.events, float(part.time[0]))
         self._first = self._first or part.between(end_s=float(part.time[min(1, len(part) - 1)]))
         self._rows, self._parts = self._rows + len(part), self._parts + 1
@@ -163,7 +169,7 @@ class ComparingDetector:
         last = found.log.between(float(found.log.time[-1]))
         return found.without_rows(_joined(self._first, last), self._rows)
 
-    def _check(self, log: Log, found: Detection) -> None:
+    def _check(self, log: Log, found: Detection, signals: dict[str, Signal]) -> None:
         """Whether anything was compared.
 
         Raises:
@@ -173,6 +179,8 @@ class ComparingDetector:
         if self._parts == 0 and not found.coverage.compared:
             nothing = _nothing(log, found.coverage)
             nothing.alone = found if found.coverage.alone else None
+            roles = {signal.role for signal in signals.values()}
+            nothing.inertial = not roles or bool(roles & {"gyro", "accelerometer"})
             raise nothing
 
     def _add(self, events: tuple[Event, ...], start_s: float) -> None:
