@@ -1,7 +1,8 @@
 """Run a monitor over a log in chunks of fixed length: compiled once for logs of any length."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from functools import partial
+from typing import NamedTuple, TypeVar
 
 import sensorfault.core._jax  # isort: skip  # noqa: F401
 
@@ -21,6 +22,7 @@ CHUNK = 8192  # rows
 EPOCHS = 512  # rows a chunk of a log with a block, whose rows are long and few
 
 Progress = Callable[[float], None]
+Kept = TypeVar("Kept")
 Numbers = np.ndarray | Array  # a JAX array while it runs, NumPy afterwards
 
 
@@ -56,22 +58,22 @@ def _keep(report: Report) -> Replayed:
     )
 
 
-@jax.jit
+@partial(jax.jit, static_argnums=4)
 def _chunk(
-    monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"]
-) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]], Replayed]:
+    monitor: Monitor, state: MonitorState, rows: Sample, real: Bool[Array, " T"], keep: Callable[[Report], Kept]
+) -> tuple[MonitorState, tuple[Float[Array, "T n"], Int8[Array, "T m"]], Kept]:
     """What is kept of each row, packed, and the shapes to unpack it by, as arrays of no rows.
 
     Rows beyond the log's end (`real` False) leave the state alone.
     """
-    shapes: list[Replayed] = []
+    shapes: list[Kept] = []
 
     def one(state: MonitorState, row: tuple[Sample, Array]) -> tuple[MonitorState, tuple[Array, Array]]:
         sample, real = row
         after, report = monitor.step(state, sample)
         kept: MonitorState = jax.tree.map(lambda new, old: jnp.where(real, new, old), after, state)
-        shapes.append(jax.tree.map(jax.typeof, _keep(report)))
-        return kept, pack(_keep(report))
+        shapes.append(jax.tree.map(jax.typeof, keep(report)))
+        return kept, pack(keep(report))
 
     done: tuple[MonitorState, tuple[Array, Array]] = lax.scan(one, state, (rows, real))
     return (*done, jax.tree.map(lambda x: jnp.zeros((0, *x.shape), x.dtype), shapes[-1]))
@@ -100,6 +102,23 @@ def replay_on(
     Raises:
         LogError: the log is empty.
     """
+    return replay_keeping(_keep, monitor, state, log, progress)
+
+
+def replay_keeping(
+    keep: Callable[[Report], Kept],
+    monitor: Monitor,
+    state: MonitorState,
+    log: Log,
+    progress: Progress | None = None,
+) -> tuple[MonitorState, Kept]:
+    """As `replay_on`, with a choice of what is kept of each row.
+
+    `keep`: a function of a module, whose values are floats, truth values and integers from -128 to 127.
+
+    Raises:
+        LogError: the log is empty.
+    """
     total = len(log)
     if not total:
         raise LogError(f"{log.name} has no rows to replay; give a longer part of it.")
@@ -110,9 +129,9 @@ def replay_on(
         real = np.arange(start, start + long) < total
         block = jax.tree.map(lambda array, rows=rows: array[rows], log.block)
         chunk = samples(log.time[rows], log.value[rows], log.fresh[rows], block)
-        state, kept, none = _chunk(monitor, state, chunk, jnp.asarray(real))
+        state, kept, none = _chunk(monitor, state, chunk, jnp.asarray(real), keep)
         result.append([np.asarray(part) for part in kept])
         if progress:
             progress(min(1.0, (start + long) / total))
-    example: Replayed = jax.tree.map(lambda x: np.empty(x.shape[1:], x.dtype), none)
+    example: Kept = jax.tree.map(lambda x: np.empty(x.shape[1:], x.dtype), none)
     return state, unpack(example, *(np.concatenate(parts)[:total] for parts in zip(*result, strict=True)))

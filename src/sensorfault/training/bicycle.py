@@ -161,15 +161,9 @@ def _push(log: Log, found: Roles) -> tuple[Float[np.ndarray, "3"], float]:
 
 
 @jax.jit
-def open_loop(
-    filter: BicycleKalman, rows: Sample
-) -> tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"], Float[Array, "T C"]]:
-    """Innovations of the filter over a log in which every sample is trusted.
-
-    Returns the innovations along and across the heading and of the velocities, their standard deviations, and whether
-    each exists; and e / √S of each channel, NaN where nothing was measured or the filter had not started.
-    """
-
+def _chunk(
+    filter: BicycleKalman, belief: Belief, rows: Sample
+) -> tuple[Belief, tuple[Float[Array, "T M"], Float[Array, "T M"], Bool[Array, "T M"], Float[Array, "T C"]]]:
     def one(belief: Belief, sample: Sample) -> tuple[Belief, tuple[Array, Array, Array, Array]]:
         residual, work = filter.evaluate(belief, sample)
         none = jnp.zeros_like(sample.fresh)
@@ -177,40 +171,65 @@ def open_loop(
         whole = jnp.where(residual.valid, residual.value / jnp.sqrt(jnp.diagonal(residual.cov)), jnp.nan)
         return belief, (work.innovation, jnp.sqrt(jnp.diagonal(work.s)), work.there, whole)
 
-    traces: tuple[Array, Array, Array, Array] = jax.lax.scan(one, filter.init(), rows)[1]
-    return traces
+    done: tuple[Belief, tuple[Array, Array, Array, Array]] = jax.lax.scan(one, belief, rows)
+    return done
+
+
+def open_loop(
+    filter: BicycleKalman, log: Log
+) -> tuple[Float[np.ndarray, "T M"], Float[np.ndarray, "T M"], Bool[np.ndarray, "T M"], Float[np.ndarray, "T C"]]:
+    """Innovations of the filter over a log in which every sample is trusted.
+
+    Returns the innovations along and across the heading and of the velocities, their standard deviations, and whether
+    each exists; and e / √S of each channel, NaN where nothing was measured or the filter had not started.
+    """
+    belief, parts = filter.init(), []
+    for start in range(0, len(log), MOST_ROWS):
+        belief, tapes = _chunk(filter, belief, _rows(log, start))
+        parts.append([np.asarray(tape) for tape in tapes])
+    innovation, sigma, there, whole = (np.concatenate(tapes)[: len(log)] for tapes in zip(*parts, strict=True))
+    return innovation, sigma, there, whole
+
+
+def _rows(log: Log, start: int) -> Sample:
+    """MOST_ROWS rows from this one on, so that one compilation serves every log; those after its end are empty."""
+    cut = slice(start, start + MOST_ROWS)
+    time, value, fresh = log.time[cut], log.value[cut], log.fresh[cut]
+    after = (0, MOST_ROWS - len(time))
+    empty = np.pad(value, (after, (0, 0)), constant_values=np.nan)
+    return samples(np.pad(time, after, "edge"), empty, np.pad(fresh, (after, (0, 0))))
 
 
 def _descend(filter: BicycleKalman, log: Log, found: Roles) -> BicycleKalman:
     """Q, R, lags and the scale of the speed by maximum likelihood of the innovations, with Huber's loss."""
-    start = int(np.searchsorted(log.time, _first(log, found) - 1.0))
-    cut = slice(start, start + MOST_ROWS)
-    rows = samples(log.time[cut], log.value[cut], log.fresh[cut])
+    rows = _rows(log, int(np.searchsorted(log.time, _first(log, found) - 1.0)))
     warm = rows.time > rows.time[0] + min(WARM_S, float(rows.time[-1] - rows.time[0]) / 4)
-    least = jnp.log(jnp.asarray(LEAST))
+    return _made(filter, jnp.asarray(_search(lambda x: float(_loss(filter, jnp.asarray(x), rows, warm)))))
 
-    def made(x: Float[Array, "11"]) -> BicycleKalman:
-        way, heading, speed, push, along, across, velocity = jnp.exp(2 * jnp.maximum(x[:7], least))
-        late = jnp.clip(x[8:], -jnp.asarray(FARTHEST), jnp.asarray(FARTHEST))
-        q = jnp.stack([way, way, heading, speed, jnp.asarray(BIAS_WALK), push])
-        r = jnp.concatenate([jnp.stack([along, across]), jnp.full(len(filter.r) - 2, velocity)])
-        new: BicycleKalman = eqx.tree_at(
-            lambda m: (m.q, m.r, m.smooth_s, m.late_s, m.speed_scale),
-            filter,
-            (q, r, jnp.clip(jnp.exp(x[7]), 1e-3, 2.0), late[:2], jnp.exp(late[2])),
-        )
-        return new
 
-    @jax.jit
-    def loss(x: Float[Array, "11"]) -> Float[Array, ""]:
-        e, sigma, there, _ = open_loop(made(x), rows)
-        there = there & warm[:, None]
-        z = jnp.abs(jnp.where(there, e / sigma, 0.0))
-        # -2 ln p = ln S + z², with Huber's 2 k |z| - k² beyond k
-        size = jnp.where(z < HUBER, z**2, 2 * HUBER * z - HUBER**2)
-        return jnp.where(there, 2 * jnp.log(sigma) + size, 0.0).sum() / jnp.maximum(there.sum(), 1)
+def _made(filter: BicycleKalman, x: Float[Array, "11"]) -> BicycleKalman:
+    """The filter with these logarithms of standard deviations and these lags."""
+    way, heading, speed, push, along, across, velocity = jnp.exp(2 * jnp.maximum(x[:7], jnp.log(jnp.asarray(LEAST))))
+    late = jnp.clip(x[8:], -jnp.asarray(FARTHEST), jnp.asarray(FARTHEST))
+    q = jnp.stack([way, way, heading, speed, jnp.asarray(BIAS_WALK), push])
+    r = jnp.concatenate([jnp.stack([along, across]), jnp.full(len(filter.r) - 2, velocity)])
+    made: BicycleKalman = eqx.tree_at(
+        lambda m: (m.q, m.r, m.smooth_s, m.late_s, m.speed_scale),
+        filter,
+        (q, r, jnp.clip(jnp.exp(x[7]), 1e-3, 2.0), late[:2], jnp.exp(late[2])),
+    )
+    return made
 
-    return made(jnp.asarray(_search(lambda x: float(loss(jnp.asarray(x))))))
+
+@jax.jit
+def _loss(filter: BicycleKalman, x: Float[Array, "11"], rows: Sample, warm: Bool[Array, " T"]) -> Float[Array, ""]:
+    """Mean of -2 ln p of the innovations after the start, with Huber's loss."""
+    e, sigma, there, _ = _chunk(_made(filter, x), filter.init(), rows)[1]
+    there = there & warm[:, None]
+    z = jnp.abs(jnp.where(there, e / sigma, 0.0))
+    # -2 ln p = ln S + z², with Huber's 2 k |z| - k² beyond k
+    size = jnp.where(z < HUBER, z**2, 2 * HUBER * z - HUBER**2)
+    return jnp.where(there, 2 * jnp.log(sigma) + size, 0.0).sum() / jnp.maximum(there.sum(), 1)
 
 
 def _search(loss: Callable[[Float[np.ndarray, "11"]], float]) -> Float[np.ndarray, "11"]:
@@ -243,8 +262,7 @@ def _first(log: Log, found: Roles) -> float:
 
 def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
     """RMS of each normalised innovation, without the start and without the largest 0.2 %."""
-    rows = samples(log.time, log.value, log.fresh)
-    e, sigma, there, _ = (np.asarray(x) for x in open_loop(filter, rows))
+    e, sigma, there, _ = open_loop(filter, log)
     late = log.time > log.time[0] + WARM_S
     spread = np.ones(e.shape[1])
     for k in range(len(spread)):
@@ -257,6 +275,4 @@ def healthy_spread(filter: BicycleKalman, log: Log) -> Float[np.ndarray, " M"]:
 
 def normalised(filter: BicycleKalman, log: Log) -> Float[np.ndarray, "T C"]:
     """e / √S of each channel, NaN where nothing was measured or the filter had not started."""
-
-    rows = samples(log.time, log.value, log.fresh)
-    return np.asarray(open_loop(filter, rows)[3])
+    return open_loop(filter, log)[3]

@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.calibration.limits import tail_limit
+from sensorfault.calibration.open_loop import open_loop
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
 from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log
 from sensorfault.runtime.model import Model, owners
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.statistic.absolute import Absolute
@@ -56,7 +56,7 @@ def healthy(
     """
     channels = len(log.channels)
     uncalibrated = monitor(log, residual, Fixed(jnp.full(channels, jnp.inf)), statistic=statistic)
-    tape = replay_log(uncalibrated, log)
+    tape = open_loop(uncalibrated, log)
     score, valid = np.asarray(tape.scores[0]), np.asarray(tape.valid)
     square = np.where(valid, np.asarray(tape.residual) ** 2, 0.0).sum(axis=0) / np.maximum(valid.sum(axis=0), 1)
     spread = np.where(valid.any(axis=0), np.sqrt(square), 1.0)

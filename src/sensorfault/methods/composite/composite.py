@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.calibration.limits import tail_limit
-from sensorfault.calibration.open_loop import open_loop_scores, uncalibrated
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Monitor
 from sensorfault.core.stage import Stage
 from sensorfault.logs.rates import hold_s
@@ -124,9 +124,7 @@ def _limits(
     owns = [branch.threshold for model in models for branch in model.monitor.branches]
     kept_as_is = [branch.certain or model.method in kept for model in models for branch in model.monitor.branches]
     limits: list[Stage[Any, Any, Any, Any]] = []
-    for own, as_is, tape in zip(
-        owns, kept_as_is, open_loop_scores(uncalibrated(_joined(log, models, owns)), log), strict=True
-    ):
+    for own, as_is, tape in zip(owns, kept_as_is, open_loop_scores(_joined(log, models, owns), log), strict=True):
         share = per_hour / (tape.shape[1] * (len(kept_as_is) - sum(kept_as_is)))
         alone, shared = (tail_limit(tape, log.period_s, rate) for rate in (per_hour, share))
         scaled = (alone > 0) & np.isfinite(shared)

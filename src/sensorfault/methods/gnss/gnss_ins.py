@@ -7,13 +7,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from sensorfault.calibration.open_loop import open_loop
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
 from sensorfault.numerics.gnss.position import LEAST
 from sensorfault.runtime.model import Model, owners
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.ins_gnss import InsGnss
@@ -81,7 +81,7 @@ class Healthy(NamedTuple):
 
 def healthy(how: Framing, epochs: Log, residual: InsGnss) -> Healthy:
     """The innovations of these epochs with the limits off."""
-    tape = replay_log(monitor(how, residual), epochs)
+    tape = open_loop(monitor(how, residual), epochs)
     value = np.where(np.asarray(tape.valid), np.asarray(tape.residual), np.nan)
     return Healthy(value, np.asarray(tape.scores[0]) * np.sign(value))
 

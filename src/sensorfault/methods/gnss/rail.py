@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from sensorfault.calibration.limits import tail_limit
 from sensorfault.calibration.means import fit_spread, mean_tape, windows
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.epochs import Framing
 from sensorfault.logs.table import Log
@@ -16,7 +17,6 @@ from sensorfault.methods.gnss.needs import framed
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.integrity import inert
 from sensorfault.runtime.model import Model
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.statistic.cumulative_bank import CumulativeBank
 from sensorfault.stages.statistic.means import Means
 from sensorfault.stages.threshold.fixed import Fixed
@@ -54,7 +54,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
     innovations = healthy(how, epochs, residual)
     windowed = means(how, innovations.normalised)
     uncalibrated = monitor(how, residual, branch(how, windowed, np.inf))
-    score = np.asarray(replay_log(uncalibrated, epochs).scores[0])
+    score = open_loop_scores(uncalibrated, epochs)[0]
     tested = np.isfinite(score).any(axis=1)
     largest = np.where(tested, np.nanmax(np.where(np.isfinite(score), score, -np.inf), axis=1), np.nan)
     limit = float(tail_limit(largest[:, None], how.period_s, PER_HOUR, BLOCK_S)[0])

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
@@ -14,7 +15,6 @@ from sensorfault.methods.height.needs import height_sources
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.pairwise_difference import PAST, RECENT
 from sensorfault.runtime.model import TOGETHER, Model, owners
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.two_heights import TwoHeights
@@ -97,7 +97,7 @@ def _limit(log: Log, residual: TwoHeights, free: Agreement) -> Float[np.ndarray,
     Raises:
         LogError: too few samples could be compared.
     """
-    score = np.asarray(replay_log(_monitor(log, residual, free, np.inf), log).scores[0])
+    score = open_loop_scores(_monitor(log, residual, free, np.inf), log)[0]
     tested = np.isfinite(score)
     if tested[:, len(free.pairs) :].any(axis=1).sum() * log.period_s < LEAST_S:
         raise LogError(

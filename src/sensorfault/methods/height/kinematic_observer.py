@@ -6,13 +6,13 @@ import jax.numpy as jnp
 import numpy as np
 
 from sensorfault.calibration.limits import tail_limit
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.height import height_observer
 from sensorfault.methods.height.height_observer import BLOCK_S, LEAST_WINDOWS, PER_HOUR
 from sensorfault.methods.height.needs import ClimbSource, height_and_climb
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime.model import Model
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.statistic.horizons import Horizons
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.fixes import Fixes
@@ -48,7 +48,7 @@ def build(log: Log, seed: int, session: Session, setting: Setting = Setting()) -
     observer = height_observer.observer(climb, fixes, steps, heights.column)
     statistic, off = Horizons(heights.column), Fixed(height_observer.silent(len(steps)))
     uncalibrated = height_observer.monitor(log, observer, statistic, off, setting.horizon_s, fixes.period_s)
-    score = np.asarray(replay_log(uncalibrated, log).scores[0])
+    score = open_loop_scores(uncalibrated, log)[0]
     limit = Fixed(jnp.asarray(tail_limit(score, log.period_s, PER_HOUR / len(steps), BLOCK_S)))
     calibrated = height_observer.monitor(log, observer, statistic, limit, setting.horizon_s, fixes.period_s)
     spans = [f"{n * fixes.period_s:.3g}" for n in steps]

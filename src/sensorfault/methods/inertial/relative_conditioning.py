@@ -12,7 +12,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from sensorfault.calibration.limits import tail_limit
-from sensorfault.calibration.open_loop import open_loop_scores, uncalibrated
+from sensorfault.calibration.open_loop import open_loop_scores
 from sensorfault.calibration.roughness import roughness
 from sensorfault.logs.table import Log
 from sensorfault.methods.inertial.conditioned import conditioned, unseen_scores
@@ -36,11 +36,11 @@ def build(log: Log, seed: int, session: Session, levels: bool = False) -> Model:
     model = conditioned(RECIPE.name, log, levels=levels, cross_validated=False)
     multivariate = model.monitor.branches[0]
     memory = MEMORY_S / log.period_s
-    lowest, highest = roughness(open_loop_scores(uncalibrated(model.monitor), log)[0], memory)
+    lowest, highest = roughness(open_loop_scores(model.monitor, log)[0], memory)
     relative = Relative(multivariate.statistic, jnp.asarray(memory), jnp.asarray(lowest), jnp.asarray(highest))
     monitor = eqx.tree_at(lambda m: m.branches[0], model.monitor, replace(multivariate, statistic=relative))
     session.progress("scoring blocks left out of the fit")
-    limit = tail_limit(unseen_scores(uncalibrated(monitor), in_a_row(RECIPE.name, log), levels), log.period_s, PER_HOUR)
+    limit = tail_limit(unseen_scores(monitor, in_a_row(RECIPE.name, log), levels), log.period_s, PER_HOUR)
     monitor = eqx.tree_at(lambda m: m.branches[0].threshold, monitor, Fixed(jnp.asarray(limit)))
     return replace(model, monitor=monitor, tests=(("mahalanobis, relative", None), *model.tests[1:]))
 

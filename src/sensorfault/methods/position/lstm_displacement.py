@@ -6,7 +6,10 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Bool
 
+from sensorfault.calibration.open_loop import uncalibrated
+from sensorfault.core.types import Report
 from sensorfault.logs.table import Log
 from sensorfault.methods.position.needs import positions_and_inertial
 from sensorfault.methods.position.positions import GAP, Positions
@@ -14,7 +17,7 @@ from sensorfault.methods.position.predicted import limited
 from sensorfault.methods.recipe import Recipe
 from sensorfault.numerics.geodesy import SEMI_MAJOR_AXIS
 from sensorfault.runtime.model import Model
-from sensorfault.runtime.runners import replay, samples
+from sensorfault.runtime.replay import replay_keeping
 from sensorfault.stages.residual.displacement import Displacement, Seen
 from sensorfault.training.gradient import Plan, train
 from sensorfault.training.initial import new_lstm
@@ -45,16 +48,17 @@ def build(log: Log, seed: int, session: Session, size: Size = Size()) -> Model:
     """
     positions, inertial = positions_and_inertial(NAME, log)
     untrained = _untrained(positions, inertial, seed, size)
-    x = samples(log.time, log.value, log.fresh)
-    uncalibrated = limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor
-    keep = jax.jit(lambda m, s, rows: replay(m, s, rows, lambda r: (r.residual.extra, r.residual.valid))[1])
-    off = eqx.tree_at(lambda m: m.branches[0].threshold.largest, uncalibrated, jnp.full(1, jnp.inf))
-    seen, valid = jax.tree.map(np.asarray, keep(off, off.init(), x))
+    monitor = uncalibrated(limited(NAME, positions, untrained, {}, METRE / _cosines(positions)).monitor)
+    seen, valid = jax.tree.map(np.asarray, replay_keeping(_seen, monitor, monitor.init(), log)[1])
     windows, mend = _windows(seen, valid[:, list(positions.columns)].all(axis=1))
     network = train(untrained.network, windows, size.plan, seed, session).net
     residual = eqx.tree_at(lambda r: (r.network, r.mend), untrained, (network, jnp.asarray(mend)))
     summary = {"inputs": [log.channels[i].path for i in (*inertial, *(positions.roles.velocity or ()))]}
     return limited(NAME, positions, residual, summary, METRE / _cosines(positions))
+
+
+def _seen(report: Report) -> tuple[Seen, Bool[Array, " C"]]:
+    return report.residual.extra, report.residual.valid
 
 
 METRE = 1 / SEMI_MAJOR_AXIS  # [rad]

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from sensorfault.calibration.open_loop import open_loop
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.rates import hold_s
 from sensorfault.logs.table import Log, LogError
@@ -15,7 +16,6 @@ from sensorfault.methods.position.positions import GAP, LEAST_FIXES, Positions
 from sensorfault.numerics.networks.dense import Linear, Mlp
 from sensorfault.numerics.networks.lstm import Lstm
 from sensorfault.runtime.model import Model, owners
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.rebuild import Rebuild
 from sensorfault.stages.residual.displacement import Displacement
@@ -85,7 +85,7 @@ def limited(
         owner=owners(log.channels, log.sensors),
         most=1,
     )
-    tape = replay_log(uncalibrated, log)
+    tape = open_loop(uncalibrated, log)
     tested = np.asarray(tape.valid)[:, columns].all(axis=1)
     if tested.sum() < LEAST_FIXES:
         raise LogError(

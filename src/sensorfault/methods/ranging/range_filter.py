@@ -7,12 +7,12 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from sensorfault.calibration.open_loop import open_loop
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.logs.rates import MISSED, hold_s
 from sensorfault.logs.table import Log
 from sensorfault.methods.ranging.needs import follower
 from sensorfault.runtime.model import Model, owners
-from sensorfault.runtime.replay import replay_log
 from sensorfault.stages.decision.exceed import Exceed
 from sensorfault.stages.recovery.drop import Drop
 from sensorfault.stages.residual.cubature import Cubature
@@ -115,7 +115,7 @@ def model(
     """`tests`: name of each branch's test, one for each channel; `extra` goes into the summary."""
     ranges = [leader.range for leader in found.leaders]
     uncalibrated = monitor(log, own.residual)  # type: ignore[arg-type]
-    tape = replay_log(uncalibrated, submerged(log, found.position))
+    tape = open_loop(uncalibrated, submerged(log, found.position))
     sigma = np.ones(len(log.channels))
     for column in ranges:
         seen = tape.residual[tape.valid[:, column], column]
