@@ -6,6 +6,8 @@ from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
 
+import jax
+
 from laws import cases
 from laws.case import Case
 
@@ -34,9 +36,13 @@ def names_with(field: str) -> tuple[str, ...]:
     return tuple(name for module in modules() for name in getattr(module, "HAVE", {}).get(field, ()))
 
 
-@functools.cache
+@functools.lru_cache(maxsize=1)
 def built(name: str) -> Case:
-    """The case of that name, made when a law first asks for it."""
+    """The case of that name, made when a law first asks for it; the programs of the case before go.
+
+    The laws of one case follow each other: see tests/conftest.py.
+    """
+    jax.clear_caches()
     case = CASES[name]()
     for field in OPTIONAL:
         if bool(getattr(case, field)) != (name in names_with(field)):

@@ -33,12 +33,12 @@ every_case = on(*CASES)
 judging_motion = on(*names_with("moving"))
 
 
-@functools.cache
+@functools.lru_cache(maxsize=1)
 def healthy(case: Case) -> Walk:
     return walk(case.monitor, case.rows)
 
 
-@functools.cache
+@functools.lru_cache(maxsize=1)
 def trouble(case: Case) -> Walk:
     return walk(case.monitor, troubled(case))
 
