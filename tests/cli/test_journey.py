@@ -28,7 +28,7 @@ def test_from_an_unknown_file_to_a_report(run: Run, drive: Path, tmp_path: Path)
     assert said.code == 0, said.err
     assert said.out == ""
     assert "gyro: x, y, z [deg/s] - likely: its 95th percentile is" in said.err
-    assert "It can judge the values of gyro.x, gyro.y, gyro.z" in said.err
+    assert "relative-conditioning judges gyro.x, gyro.y, gyro.z, accelerometer.x" in said.err
     assert "Checked for dropouts only: east_m.east_m, north_m.north_m" in said.err
     text = (tmp_path / "vehicle.toml").read_text()
     assert "[sensor.accelerometer]" in text

@@ -8,6 +8,7 @@ import pytest
 
 import fitted
 from cli.conftest import Run, write_csv
+from logs import written_dataflash
 from sensorfault.logs import write
 from sensorfault.methods.catalog import DEFAULT
 
@@ -73,21 +74,26 @@ def test_init_says_how_sure_it_is(run: Run) -> None:
 def test_init_promises_what_detect_then_does(run: Run, drive: Path) -> None:
     promised = json.loads(run("init", drive, "--json", "-").out)["detect"]
     assert promised["refuses"] is None
-    made = json.loads(run("fit", drive, "--held-out", 0, "--until", 40, "--json", "-").out)
-    assert promised["values"] == made["watched"]
-    assert promised["dropouts_only"] == made["not_watched"]
+    assert promised["alone"] == ["gyro", "accelerometer"]
+    made = json.loads(run("fit", drive, "--method", DEFAULT, "--held-out", 0, "--until", 40, "--json", "-").out)
+    assert f"{DEFAULT} judges {', '.join(made['watched'])}, each by itself." in promised["checks"][0]
+    assert "Checked for dropouts only: east_m.east_m, north_m.north_m (marked watch = false)." in promised["checks"]
     assert run("detect", drive).code == 0
 
 
-@pytest.mark.parametrize("what", ["only a position", "never together"])
+def test_init_of_a_flight_promises_what_detect_compares(run: Run, tmp_path: Path) -> None:
+    path = Path("flight.bin")
+    path.write_bytes(written_dataflash.flight(seconds=60.0))
+    promised = json.loads(run("init", path, "--json", "-").out)["detect"]
+    assert len(promised["compared"]) > 1
+    err = run("detect", path).err
+    assert all(sentence in err for sentence in promised["checks"])
+
+
+@pytest.mark.parametrize("what", ["three rows", "two rows"])
 def test_init_says_that_detect_will_refuse(run: Run, what: str) -> None:
-    rig = fitted.rig().between(end_s=20.0)
-    value = rig.value.copy()
-    if what == "only a position":
-        value[:, :6] = np.nan
-    if what == "never together":
-        value[::2, :3], value[1::2, 3:6] = np.nan, np.nan
-    path = write_csv(Path("odd.csv"), fitted.shifted(rig, value))
+    rig = fitted.rig().between(end_s=0.05 if what == "three rows" else 0.03)
+    path = write_csv(Path("odd.csv"), rig)
     said = run("init", path)
     assert said.code == 0
     refused = run("detect", path)

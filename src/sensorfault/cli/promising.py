@@ -61,13 +61,20 @@ def _of(log: "Log") -> Promise:
 def _inertial(log: "Log", nothing: "NothingToCompare", pauses: tuple[str, ...]) -> Promise:
     """Of a log without two sensors that measure the same: those that a method for single sensors watches."""
     from sensorfault.calibration.data_screening import leave_out
-    from sensorfault.methods.catalog import recipe
+    from sensorfault.logs import LogError
+    from sensorfault.methods.inertial.needs import in_a_row
     from sensorfault.runtime.streaming import beginning_s
 
-    training, _ = leave_out(log.measurements().between(end_s=beginning_s(log, LEARN)))
-    if len(training) > 1 and not recipe(fitting.INERTIAL).lacks(training):
-        said = f"No two sensors measure the same; {fitting.INERTIAL} judges single sensors by their first half."
-        return Promise((said,), "", pauses, (), tuple(sensor.name for sensor in training.sensors))
+    early, _ = leave_out(log.measurements().between(end_s=beginning_s(log, LEARN)))
+    try:
+        training = in_a_row(fitting.INERTIAL, early) if len(early) > 1 else None
+    except LogError:
+        training = None
+    if training is not None:
+        watched = [channel.path for channel, w in zip(early.channels, training.watched, strict=True) if w]
+        said = f"No two sensors measure the same; {fitting.INERTIAL} judges {limits.some(watched)}, each by itself."
+        sensors = dict.fromkeys(path.partition(".")[0] for path in watched)
+        return Promise((said, *limits.dropouts_only(training.reasons)), "", pauses, (), tuple(sensors))
     if nothing.alone is None or nothing.alone.coverage is None:
         return Promise(refuses=str(nothing), pauses=pauses)
     return Promise(limits.of_coverage(nothing.alone), "", pauses, (), nothing.alone.coverage.alone)
