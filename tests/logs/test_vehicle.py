@@ -89,7 +89,7 @@ def test_what_is_written_parses_to_the_same(vehicle: VehicleFile) -> None:
             "[vehikel]\n[vehicle]",
             "the top has an unknown key 'vehikel'; take one of vehicle, file, sensor",
         ),
-        ('unit = "ms"', 'unit = "min"', r"\[file.log\] unit = 'min' is no unit of time; take one of s, ms"),
+        ('unit = "ms"', 'unit = "eon"', r"\[file.log\] unit = 'eon' is no unit of time; take one of s, ms"),
         ('unit = "deg/s"', 'unit = "furlong"', r"\[sensor.gyro.channel.x\] unit = 'furlong' is unknown; take one of"),
         ('time = "t"', "time = 7", r"\[file.log\] time = 7 must be a text in quotes"),
         ('time = "t"', 'tiem = "t"', r"\[file.log\] has an unknown key 'tiem'"),

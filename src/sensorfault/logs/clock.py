@@ -4,16 +4,19 @@ from bisect import bisect_left
 from dataclasses import dataclass
 
 import numpy as np
-import polars as pl
 from jaxtyping import Float, Int
 
+from sensorfault.logs.clock_steps import continued, spread
+from sensorfault.logs.dates import READABLE
+from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.readers.source import Source
+from sensorfault.logs.stamps import seconds, time_of, unreadable
 from sensorfault.logs.table import LogError
+from sensorfault.logs.time_units import is_calendar
 
 _JITTER = 0.25  # reported if one period in twenty is off by more than this share
 HOPELESS = 0.2  # share of rows that may be dropped
-_PER_SECOND = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
 _UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: a reading between them is Unix time
 
 
@@ -41,70 +44,52 @@ def is_unix(time_s: float) -> bool:
     return _UNIX_S[0] <= time_s < _UNIX_S[1]
 
 
-def read_clock(source: Source, column: str, unit: str) -> Clock:
-    """The clock in a time column.
+def read_clock(source: Source, file: FileEntry) -> Clock:
+    """The clock in a file's time column, or of its rate.
 
     Raises:
         LogError: no such column, no times in it, only one row, or more than a fifth of the rows go back in time.
     """
-    if column not in source.frame.columns:
-        known = ", ".join(source.frame.columns)
-        raise LogError(f"{source.path}: there is no time column '{column}'; take one of {known}.")
-    zero, time = seconds(source, column, unit)
-    name, notes = source.name, []
+    zero, time = seconds(source, file)
+    column = time_of(source, file)[0]
+    if column is None:
+        said = f"{source.name}: it has no clock; its rows are taken as {file.rate_hz:g} a second, as given."
+        if len(time) < 2:
+            raise LogError(f"{source.path}: one row is no log; name a file with at least two rows.")
+        return Clock(zero, time, np.arange(len(time)), 1 / (file.rate_hz or 1.0), (said,))
+    notes = _without_time(source, file, time)
+    time, jumps = continued(source, column, time)
+    time, even = spread(source, column, time)
     usable = np.flatnonzero(np.isfinite(time))
-    if len(usable) < len(time):
-        bad = int(np.flatnonzero(~np.isfinite(time))[0])
-        lost = counted(len(time) - len(usable), "row")
-        notes.append(f"{name}: {lost} without a time, first {source.place(bad)}, left out.")
     rows, faults = _rising(source, column, time, usable)
     if len(rows) < 2:
         raise LogError(f"{source.path}: one row is no log; name a file with at least two rows at different times.")
     first = float(time[rows[0]])
     kept = (time if len(rows) == len(time) else time[rows]) - first
-    period, unsteady = _steadiness(name, kept)
-    return Clock(zero + first, kept, rows, period, (*notes, *faults, *unsteady))
+    period, unsteady = _steadiness(source.name, kept)
+    return Clock(zero + first, kept, rows, period, (*notes, *jumps, *even, *faults, *unsteady))
 
 
-def seconds(source: Source, column: str, unit: str) -> tuple[float, np.ndarray]:
-    """The first reading [s] and the seconds since then, NaN where there is none.
-
-    Integers are subtracted as integers: nanoseconds since 1970 would lose 200 ns in a float.
+def _without_time(source: Source, file: FileEntry, time: np.ndarray) -> list[str]:
+    """A sentence on rows without a time.
 
     Raises:
-        LogError: no such column, or readings that are no times.
+        LogError: too many cells hold something that is no time.
     """
-    if unit == "iso8601":
-        return _calendar(source, column)
-    reading = source.any_column(column)
-    reading = reading.dt.epoch("us") / 1e6 if reading.dtype.is_temporal() else source.column(column)
-    known = reading.drop_nulls()
-    if not len(known):
-        raise LogError(f"{source.path}: the time column '{column}' is empty; name another in vehicle.toml.")
-    first = known[0]
-    per_second = 1 if source.frame[column].dtype.is_temporal() else _PER_SECOND[unit]
-    return float(first) / per_second, (reading - first).cast(pl.Float64).to_numpy() / per_second
-
-
-def _calendar(source: Source, column: str) -> tuple[float, np.ndarray]:
-    stamp = source_column = source.any_column(column)
-    if not stamp.dtype.is_temporal():
-        try:
-            stamp = (
-                stamp.cast(pl.String).str.strip_chars().str.to_datetime(time_unit="us", strict=False, time_zone="UTC")
-            )
-        except pl.exceptions.PolarsError:
-            stamp = pl.Series(column, [None] * len(stamp), dtype=pl.Datetime("us"))
-    bad = (stamp.is_null() & source_column.is_not_null()).arg_true()
-    if len(bad):
-        row = int(bad[0])
+    lost = int((~np.isfinite(time)).sum())
+    if not lost:
+        return []
+    column, unit = time_of(source, file)
+    count, row, cell = unreadable(source, file, time)
+    if count > HOPELESS * len(time):
+        wanted = "a date or clock of its form" if is_calendar(unit) else "a number"
         raise LogError(
-            f"{source.path}: {source.place(row)}, column '{column}' holds '{source_column[row]}', which is no date and "
-            "time like 2026-11-23T12:00:00.5; correct the cell or the time column's unit."
+            f"{source.path}: {source.place(row)}, column '{column}' holds '{cell}', which is not {wanted}; correct the "
+            f"cells or the time column's unit. Times are read as {READABLE}."
         )
-    ticks = stamp.dt.epoch("us")
-    first = ticks.drop_nulls()[0] if ticks.null_count() < len(ticks) else 0
-    return first / 1e6, (ticks - first).cast(pl.Float64).to_numpy() / 1e6
+    said = f" ('{cell}' in {source.place(row)} is no time)" if count else ""
+    bad = int(np.flatnonzero(~np.isfinite(time))[0])
+    return [f"{source.name}: {counted(lost, 'row')} without a time, first {source.place(bad)}, left out{said}."]
 
 
 def _rising(source: Source, column: str, time: np.ndarray, usable: np.ndarray) -> tuple[np.ndarray, list[str]]:

@@ -37,7 +37,12 @@ class SensorEntry:
 
 @dataclass(frozen=True)
 class FileEntry:
-    """One file, or one `table` of a file that holds several, and its clock."""
+    """One file, or one `table` of a file that holds several, and its clock.
+
+    `fine`: a second column that goes on where the first ends, as the clock beside a date. `rate_hz`: rows a second of a
+    file without a clock; it has no `time` then. `doubt`: another way to read its time that
+    is as good as the one taken.
+    """
 
     name: str = "log"
     path: str | None = None
@@ -46,5 +51,8 @@ class FileEntry:
     offset_s: float = 0.0
     tag: str | None = None
     table: str | None = None
+    fine: str | None = None
+    rate_hz: float | None = None
     why: str = field(default="", compare=False)
+    doubt: str = field(default="", compare=False)
     left_out: tuple[tuple[str, str], ...] = field(default=(), compare=False)

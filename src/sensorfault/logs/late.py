@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from sensorfault.logs.clock import HOPELESS, seconds
+from sensorfault.logs.clock import HOPELESS
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.phrase import counted
 from sensorfault.logs.readers.source import Source, Tables
+from sensorfault.logs.stamps import seconds
 from sensorfault.logs.table import LogError
 
 
@@ -51,7 +52,7 @@ class Late:
         return {name: self._kept(one, named[name], handed_s) for name, one in tables.items() if name in named}
 
     def _kept(self, source: Source, entry: FileEntry, handed_s: float) -> Source:
-        column, unit = entry.time or source.time or "", source.unit or entry.unit
+        column = entry.time or source.time or ""
         table = self._tables.setdefault(source.table, _Table(source.path, source.name, column))
         source = replace(source, before=table.rows)
         table.rows += len(source.frame)
@@ -59,7 +60,7 @@ class Late:
             return source
         if not source.frame[column].dtype.is_numeric() or not source.frame[column].count():
             return source
-        zero_s, time = seconds(source, column, unit)
+        zero_s, time = seconds(source, entry)
         time = zero_s + entry.offset_s + time
         late = time <= handed_s
         table.back.add(source, late & (time <= table.last_s))

@@ -53,13 +53,7 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
     Raises:
         LogError: no time, a column that is missing, holds text or holds nothing.
     """
-    column, unit = file.time or source.time, source.unit or file.unit
-    if column is None:
-        known = ", ".join(source.frame.columns)
-        raise LogError(
-            f'{source.path}: [file.{file.name}] names no time column; write time = "..." with one of {known}.'
-        )
-    clock = read_clock(source, column, unit)
+    clock = read_clock(source, file)
     zero, rate = clock.zero_s + file.offset_s, 1.0
     measured = any(channel.kind not in SAID for sensor in sensors for channel in sensor.channels)
     notes = [*source.notes, *(clock.notes if measured else ())]

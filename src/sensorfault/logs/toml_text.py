@@ -9,9 +9,10 @@ from sensorfault.logs.table import SAID
 def file_lines(file: FileEntry) -> list[str]:
     """The table [file.NAME]."""
     lines = [f"[file.{key_of(file.name)}]"]
-    names = {"path": file.path, "table": file.table, "time": file.time}
+    names = {"path": file.path, "table": file.table, "time": file.time, "fine": file.fine}
     lines += [f"{key} = {quote(value)}" for key, value in names.items() if value is not None]
-    lines.append(f"unit = {quote(file.unit)}" + remark(file.why))
+    clock = f"unit = {quote(file.unit)}" if file.rate_hz is None else f"rate_hz = {file.rate_hz!r}"
+    lines.append(clock + remark(file.why))
     if file.offset_s:
         lines.append(f"offset_s = {file.offset_s!r}")
     if file.tag is not None:

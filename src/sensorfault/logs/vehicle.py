@@ -10,7 +10,10 @@ steering_ratio = 14.5      # optional: angle of the steering wheel over that of 
 [file.log]                 # one table for each file of the log
 path = "drive.csv"         # beside this file; may be left out if the log is one file
 time = "millis"            # columns of a headerless file are c1, c2, ...; may be left out for .pos
-unit = "ms"                # s ms us ns iso8601
+unit = "ms"                # s ms us ns min h; iso8601; a format as "%d.%m.%Y %H:%M:%S%.f"; excel, datenum: days
+# fine = "clock"           # a column that goes on where the first ends: the clock beside a date (unit: both formats
+                           # with a blank between), or the rest of a time in s+ms, s+us, s+ns, week+s, week+ms
+# rate_hz = 100.0          # instead of time: rows a second of a file without a clock
 offset_s = 0.0             # added to this file's time, to put it on the common clock
 table = "GPS"              # optional: which one, where a file holds several tables (.bin, .mat)
 tag = "imu.csv.tag"        # optional: RTKLIB's time tag, which ties a counter to GPS time
@@ -36,12 +39,11 @@ from pathlib import Path
 
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.table import KINDS, SAID, LogError
+from sensorfault.logs.time_units import JOINED, TIME_UNITS, is_time_unit
 from sensorfault.logs.toml_table import TomlTable
 from sensorfault.logs.toml_text import comment, file_lines, quote, sensor_lines
 from sensorfault.logs.units import UNITS, known
 from sensorfault.logs.validity import Validity
-
-TIME_UNITS = ("s", "ms", "us", "ns", "iso8601")
 
 
 @dataclass(frozen=True)
@@ -135,14 +137,25 @@ def _vehicle(top: TomlTable, where: str) -> VehicleFile:
 
 
 def _file(name: str, table: TomlTable) -> FileEntry:
-    table.only("path", "time", "unit", "offset_s", "tag", "table")
+    table.only("path", "time", "unit", "offset_s", "tag", "table", "fine", "rate_hz")
     unit = table.text("unit") or "s"
-    if unit not in TIME_UNITS:
+    if not is_time_unit(unit):
         raise LogError(
-            f"{table.where}: [{table.path}] unit = '{unit}' is no unit of time; take one of {', '.join(TIME_UNITS)}."
+            f"{table.where}: [{table.path}] unit = '{unit}' is no unit of time; take one of {', '.join(TIME_UNITS)}, "
+            'or a format such as "%d.%m.%Y %H:%M:%S%.f".'
+        )
+    time, fine, rate_hz = table.text("time"), table.text("fine"), table.number("rate_hz")
+    if rate_hz is not None and (time is not None or not 0 < rate_hz < float("inf")):
+        raise LogError(f"{table.where}: [{table.path}] rate_hz is for a file without time; give a positive number.")
+    if (fine is None) == (unit in JOINED) and not (fine is not None and "%" in unit):
+        raise LogError(
+            f"{table.where}: [{table.path}] the key fine belongs to the units {', '.join(JOINED)}, and to formats of a "
+            "date and a clock in two columns."
         )
     offset = table.number("offset_s") or 0.0
-    return FileEntry(name, table.text("path"), table.text("time"), unit, offset, table.text("tag"), table.text("table"))
+    return FileEntry(
+        name, table.text("path"), time, unit, offset, table.text("tag"), table.text("table"), fine, rate_hz
+    )
 
 
 def _sensor(name: str, table: TomlTable, files: tuple[FileEntry, ...]) -> SensorEntry:

@@ -129,24 +129,18 @@ def guess_table(source: Source, table: str | None) -> Guess:
     """The clock and the sensors in one table."""
     path = source.path
     head = replace(source, frame=source.frame.head(_ROWS))
-    time, unit, why = guess_time(head)
-    clock = read_clock(head, time, unit)
-    sensors, left_out = _sensors(head, time, clock)
+    timed = guess_time(head)
+    clock = read_clock(head, timed)
+    if timed.fine is not None:
+        head = replace(head, frame=head.frame.drop(timed.fine))
+    sensors, left_out = _sensors(head, timed.time, clock)
     tag = path.with_name(path.name + ".tag")
     has_tag = tag.is_file() and not clock.is_unix
-    file = FileEntry(
-        path=path.name,
-        time=time,
-        unit=unit,
-        tag=tag.name if has_tag else None,
-        table=table,
-        why=why,
-        left_out=tuple(left_out),
-    )
+    file = replace(timed, path=path.name, tag=tag.name if has_tag else None, table=table, left_out=tuple(left_out))
     return Guess(path, tuple(source.frame.columns), file, clock, sensors, times=source.times)
 
 
-def _sensors(source: Source, time: str, clock: Clock) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
+def _sensors(source: Source, time: str | None, clock: Clock) -> tuple[list[SensorEntry], list[tuple[str, str]]]:
     """The sensors that the format says or the columns look like, and the columns left out with the reason why."""
     if source.sensors:
         return list(source.sensors), []

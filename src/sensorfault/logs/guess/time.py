@@ -2,100 +2,65 @@
 
 import re
 
-import numpy as np
 import polars as pl
 
-from sensorfault.logs.clock import is_unix
-from sensorfault.logs.guess.words import read_name
+from sensorfault.logs.dates import READABLE
+from sensorfault.logs.entries import FileEntry
+from sensorfault.logs.guess.clock_pairs import pairs
+from sensorfault.logs.guess.clocks import Candidate, candidate, unit_by_form
+from sensorfault.logs.guess.time_names import is_plain
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
-
-_RISING = 0.8  # share of the steps that must be forward
-_SPAN = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-_USUAL_STEP_S = 0.05
-_NAMED_UNITS = {"s": "s", "sec": "s", "ms": "ms", "us": "us", "ns": "ns"}
-_UNIT_WORDS = (("ms", r"millis|msec|_ms$"), ("us", r"micros|usec|_us$"), ("ns", r"nanos|nsec|_ns$"))
+from sensorfault.logs.time_units import PER_SECOND
 
 
-def guess_time(source: Source) -> tuple[str, str, str]:
-    """Time column, its unit and the reason.
+def guess_time(source: Source, rate_hz: float | None = None) -> FileEntry:
+    """The time of a table: its column or two, the unit and the reason. `rate_hz`: rows a second if there is no clock.
 
     Raises:
-        LogError: no column increases like a time.
+        LogError: no column is a clock by its name, unit or form, and there is no rate.
     """
     if source.time is not None:
         why = f"{source.path.suffix} files have a time column"
-        return source.time, source.unit or _unix_unit(source.frame[source.time]) or "s", why
-    ranked = []
-    for i, name in enumerate(source.frame.columns):
-        column = source.frame[name]
-        if column.dtype == pl.String and read_name(name).kind == "time" and _mostly_numbers(column):
-            source.column(name)  # says which cell is none
-        if column.dtype == pl.String or column.dtype.is_temporal():
-            share, unit = _calendar(column)
-        elif column.dtype.is_numeric():
-            share, unit = _rising(column), ""
-        else:
-            continue
-        if share < _RISING:
-            continue
-        named = read_name(name).kind == "time"
-        unit = unit or _unit(name, column)
-        ranked.append((named, _is_unix(column, unit), round(share, 2), -i, name, unit))
-    if not ranked:
-        raise LogError(
-            f"{source.path}: there is no time column: no column increases from row to row; add one, or name it in "
-            "vehicle.toml if the rows are out of order."
+        form = unit_by_form(source.frame[source.time], named=False) if source.unit is None else None
+        unit = source.unit or (form if form in PER_SECOND else None) or "s"
+        return FileEntry(time=source.time, unit=unit, why=why)
+    headed = not all(re.fullmatch(r"c\d+", name) for name in source.frame.columns)
+    found = _candidates(source, headed)
+    able = [one for one in found if one.runs] or [one for one in found if one.stands] or [
+        one for one in found if one.file.time and is_plain(one.file.time)
+    ]
+    unread = _unread(source, found) if headed else None
+    if not able or (unread is not None and not any(one.named for one in able)):
+        if rate_hz is not None:
+            return FileEntry(rate_hz=rate_hz, why="rows a second, as given")
+        raise unread or LogError(
+            f"{source.path}: there is no time column: no column is a clock by its name, its unit or its form; name one "
+            "in vehicle.toml, or give the rows a second of a table without a clock (--rate HZ)."
         )
-    named, unix, _, _, name, unit = max(ranked)
-    why = "by its name" if named else "increases from row to row"
-    return name, unit, f"{why}; unit {'as Unix time' if unix else 'by name and usual interval'}"
+    best = max(range(len(able)), key=lambda i: (*able[i].rank, -i))
+    return able[best].file
 
 
-def _mostly_numbers(column: pl.Series) -> bool:
-    return column.str.strip_chars().cast(pl.Float64, strict=False).null_count() < len(column) / 2
+def _candidates(source: Source, headed: bool) -> list[Candidate]:
+    """All that may be the clock; a column that is one half of a pair does not stand alone."""
+    joined = pairs(source) if headed else []
+    halves = {name for one in joined for name in (one.file.time, one.file.fine)}
+    alone = [candidate(source, name, headed) for name in source.frame.columns if name not in halves]
+    return [*(one for one in alone if one is not None), *joined]
 
 
-def _rising(column: pl.Series) -> float:
-    step = np.diff(column.cast(pl.Float64).drop_nulls().to_numpy())
-    return float(np.mean(step > 0)) if len(step) else 0.0
-
-
-def _calendar(column: pl.Series) -> tuple[float, str]:
-    """Share of steps forward if the cells are dates and times."""
-    stamp = column
-    if column.dtype == pl.String:
-        head = column.drop_nulls().head(100)
-        dated = head.str.contains(r"^\s*\d{4}-\d{2}-\d{2}[T ]\d").sum()
-        if dated <= len(head) / 2:
-            return 0.0, ""
-        stamp = column.str.strip_chars().str.to_datetime(time_unit="us", strict=False, time_zone="UTC")
-    return _rising(stamp.dt.epoch("us")), "iso8601"
-
-
-def _unit(name: str, column: pl.Series) -> str:
-    """By a unit in the name, by the size of Unix time, else the unit that makes the interval usual."""
-    bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", name)
-    if bracket and bracket[1].strip() in _NAMED_UNITS:
-        return _NAMED_UNITS[bracket[1].strip()]
-    unix = _unix_unit(column)
-    if unix is not None:
-        return unix
-    for unit, pattern in _UNIT_WORDS:
-        if re.search(pattern, name.lower()):
-            return unit
-    reading = column.cast(pl.Float64).drop_nulls().to_numpy()
-    step = float(np.median(np.diff(reading))) if len(reading) > 1 else 1.0
-    return min(_SPAN, key=lambda unit: abs(np.log(max(step, 1e-12) * _SPAN[unit] / _USUAL_STEP_S)))
-
-
-def _unix_unit(column: pl.Series) -> str | None:
-    """The unit in which a column is Unix time."""
-    return next((unit for unit in _SPAN if _is_unix(column, unit)), None)
-
-
-def _is_unix(column: pl.Series, unit: str) -> bool:
-    if unit == "iso8601":
-        return True
-    known = column.drop_nulls()
-    return bool(len(known)) and is_unix(float(known[0]) * _SPAN[unit])
+def _unread(source: Source, found: list[Candidate]) -> LogError | None:
+    """What is said of a column that is called time and cannot be read, if there is one."""
+    read = {one.file.time for one in found}
+    for name in source.frame.columns:
+        cells = source.frame[name]
+        if name in read or not is_plain(name) or cells.dtype != pl.String or not cells.count():
+            continue
+        row = int(cells.is_not_null().arg_max() or 0)
+        return LogError(
+            f"{source.path}: {source.place(row)}, column '{name}' holds '{cells[row]}', which is no time that can be "
+            f"read. Times are read as {READABLE}; write another form into vehicle.toml (unit = "
+            '"%d.%m.%Y %H:%M:%S"), or give the rows a second (--rate HZ).'
+        )
+    return None

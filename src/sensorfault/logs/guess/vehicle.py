@@ -102,6 +102,8 @@ def _missed(guesses: list[Guess]) -> list[str]:
     said = []
     for one in guesses:
         out = [f"{name} ({reason})" for name, reason in one.file.left_out if reason not in (OTHER_TIME, QUALITY)]
+        if one.file.doubt:
+            said.append(f"{one.called}: {one.file.doubt}; the unit of the time in vehicle.toml says which is right.")
         if out:
             said.append(f"{one.called}: columns left out, as they are not measurements: {', '.join(out)}.")
     return said
