@@ -52,7 +52,7 @@ def test_a_table_with_a_time_of_its_own_keeps_it(tmp_path: Path) -> None:
 
 def test_as_many_times_as_rows(tmp_path: Path) -> None:
     lay_out(tmp_path, 0.02 * np.arange(202))
-    with pytest.raises(LogError, match="no column increases"):
+    with pytest.raises(LogError, match="there is no time column"):
         read(tmp_path / "state.csv")
     table = np.column_stack([TIME_S, STATE])
     np.savetxt(tmp_path / "state.csv", table, delimiter=",")

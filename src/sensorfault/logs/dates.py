@@ -1,6 +1,7 @@
 """Dates and clocks as text: which form a column has, and its microseconds. polars reads them; this picks the format."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -82,6 +83,11 @@ def form_of(cells: pl.Series) -> Form | None:
     )
     even = [form for leaps, _, form in ranked[1:] if leaps == ranked[0][0]]
     return Form(ranked[0][2], even[0] if even else "")
+
+
+def form_of_cells(cells: Sequence[str]) -> Form | None:
+    """The same for a few cells."""
+    return form_of(pl.Series(list(cells), dtype=pl.String))
 
 
 def _text(cells: pl.Series) -> pl.Series:

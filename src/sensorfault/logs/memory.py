@@ -9,8 +9,7 @@ import polars as pl
 
 from sensorfault.core.expect import called
 from sensorfault.logs.readers.attitude import with_attitude
-from sensorfault.logs.readers.csv import numbers_of
-from sensorfault.logs.readers.dialect import MISSING
+from sensorfault.logs.readers.cells import MISSING, numbers_of
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 

@@ -27,9 +27,11 @@ def guess_time(source: Source, rate_hz: float | None = None) -> FileEntry:
         return FileEntry(time=source.time, unit=unit, why=why)
     headed = not all(re.fullmatch(r"c\d+", name) for name in source.frame.columns)
     found = _candidates(source, headed)
-    able = [one for one in found if one.runs] or [one for one in found if one.stands] or [
-        one for one in found if one.file.time and is_plain(one.file.time)
-    ]
+    able = (
+        [one for one in found if one.runs]
+        or [one for one in found if one.stands]
+        or [one for one in found if one.file.time and is_plain(one.file.time)]
+    )
     unread = _unread(source, found) if headed else None
     if not able or (unread is not None and not any(one.named for one in able)):
         if rate_hz is not None:

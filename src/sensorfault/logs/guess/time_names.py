@@ -3,15 +3,8 @@
 import re
 
 from sensorfault.logs.guess.words import read_name
+from sensorfault.logs.time_units import TIME_WORDS
 
-_UNITS = {
-    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("ms", "msec", "millis", "millisecond", "milliseconds"), "ms"),
-    **dict.fromkeys(("us", "µs", "μs", "usec", "micros", "microsecond", "microseconds"), "us"),
-    **dict.fromkeys(("ns", "nsec", "nanos", "nanosecond", "nanoseconds"), "ns"),
-    **dict.fromkeys(("min", "minute", "minutes"), "min"),
-    **dict.fromkeys(("h", "hr", "hour", "hours"), "h"),
-}
 _WORDS = (
     ("ms", r"millis|msec|(^|_)ms$"),
     ("us", r"micros|usec|(^|_)us$"),
@@ -39,7 +32,7 @@ def is_plain(name: str) -> bool:
 def unit_by_bracket(name: str) -> str | None:
     """The unit in brackets behind a name."""
     bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", name)
-    return None if bracket is None else _UNITS.get(bracket[1].strip())
+    return None if bracket is None else TIME_WORDS.get(bracket[1].strip())
 
 
 def unit_by_word(name: str) -> str | None:

@@ -1,22 +1,30 @@
-"""How a text table is written: delimiter, comments, header, first and last whole row."""
+"""How a text table is written: delimiter, comments, header, units, first and last whole row."""
 
-import re
-from collections import Counter
-from dataclasses import dataclass
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from sensorfault.logs.readers.cells import has_decimal_comma, is_number, is_valued
+from sensorfault.logs.readers.header import header_of
+from sensorfault.logs.readers.records import Record, some_records, usual_width
+from sensorfault.logs.readers.text import Text, beginning
 from sensorfault.logs.table import LogError
 
-_HEAD_BYTES = 1 << 16
-_COMMENT = b"#%"
 _DELIMITERS = (",", ";", "\t", "|")
-_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-MISSING = ("", "NA", "N/A", "NULL", "null", "None", "none", "-")  # cells that mean no value
+_COMMENTS = ("#", "%", "//")
+_VOTERS = 200  # lines that vote, the last ones of the beginning: above them may stand anything
+_EVEN = 0.8  # share of the records that have the usual number of cells, unless there are several kinds
+_KINDS, _OF_KIND = 16, 3  # most kinds, and fewest records of one, in the beginning
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """`delimiter` None: any run of blanks. `skip`: lines before the first row. `names`: one for each column."""
+    """`delimiter` None: any run of blanks. `skip`: lines before the first row. `names`: one for each column.
+
+    `units`: what the header says of the columns beside their names. `unnamed`: columns that the header does not name.
+    `kinds`: whether the rows are records of several kinds, which the first cell names, each with cells of its own.
+    """
 
     delimiter: str | None
     names: tuple[str, ...]
@@ -25,107 +33,133 @@ class Dialect:
     comment: str | None
     headerless: bool
     first_cut: bool
+    text: Text = field(repr=False)
+    units: tuple[str, ...] = ()
+    unnamed: frozenset[str] = frozenset()
+    kinds: bool = False
 
     def split(self, line: str) -> list[str]:
         """The cells of one line, without quotes and blanks."""
-        return [cell.strip().strip('"') for cell in line.strip().split(self.delimiter)]
-
-
-def is_number(cell: str) -> bool:
-    """Whether the cell reads as a number; a decimal comma is one too."""
-    return _NUMBER.fullmatch(cell) is not None
+        return next((list(one.cells) for one in some_records([(1, line)], self.delimiter)), [])
 
 
 def sniff(path: Path) -> Dialect:
-    """Read the first 64 kB and say how the table is written.
+    """Read the beginning and say how the table is written.
 
     Raises:
-        LogError: empty, not text, or no table with two columns or more.
+        LogError: empty, not text, no table with two columns or more, or a header that does not fit its rows.
     """
-    with path.open("rb") as file:
-        head = file.read(_HEAD_BYTES)
-    if not head.strip():
-        raise LogError(f"{path}: the file is empty; name a log with a header and rows.")
-    if b"\0" in head or sum(byte < 9 or 13 < byte < 32 for byte in head) > len(head) // 100:
-        raise LogError(f"{path}: this is not text although its name says so; export the log as CSV or Parquet.")
-    lines = head.decode("utf-8-sig", "replace").splitlines()
-    if len(head) == _HEAD_BYTES and len(lines) > 1:
-        lines.pop()  # cut by us, not by the file
-    comment = next((line.lstrip()[0] for line in lines if line.lstrip()[:1].encode() in (b"#", b"%")), None)
-    table = [i for i, line in enumerate(lines) if line.strip() and not (comment and line.lstrip().startswith(comment))]
-    if not table:
+    text = beginning(path)
+    comment = _comment(text.lines)
+    lines = [(i, line) for i, line in enumerate(text.lines, 1) if line.strip()]
+    rows = [(i, line) for i, line in lines if not (comment and line.lstrip().startswith(comment))]
+    if not rows:
         raise LogError(f"{path}: the file holds comments only; name a log with rows.")
-    delimiter = _delimiter([lines[i] for i in table])
-    dialect = Dialect(delimiter, (), 0, False, comment, False, False)
-    cells = {i: dialect.split(lines[i]) for i in table}
-    width = Counter(len(row) for row in cells.values()).most_common(1)[0][0]
+    delimiter = _delimiter(rows[-_VOTERS:])
+    table = some_records(rows, delimiter)
+    width, votes = usual_width(table[-_VOTERS:])
     if width < 2:
         raise LogError(
             f"{path}: a log needs a time column and one more, but its lines have one cell; check its delimiter."
         )
-    return _with_header(path, dialect, lines, table, cells, width)
+    comments = [
+        record
+        for i, line in lines
+        if comment and line.lstrip().startswith(comment)
+        for record in _remark(i, line.lstrip().removeprefix(comment), delimiter, width)
+    ]
+    voters = table[-_VOTERS:]
+    if votes < _EVEN * len(voters) and _votes(voters) >= _EVEN * len(voters):
+        return Dialect(delimiter, (), 0, _decimal(table, delimiter), comment, True, False, text, kinds=True)
+    return _described(path, text, comment, delimiter, table, comments, width)
 
 
-def _delimiter(lines: list[str]) -> str | None:
+def _described(
+    path: Path,
+    text: Text,
+    comment: str | None,
+    delimiter: str | None,
+    table: list[Record],
+    comments: list[Record],
+    width: int,
+) -> Dialect:
+    found = header_of(table, comments, width)
+    if found is None:
+        raise LogError(f"{path}: there is a header, but no row below it; name a log with rows.")
+    if found.wrong:
+        raise LogError(
+            f"{path}: {found.wrong}; name each column in the header, or put quotes around cells with commas."
+        )
+    cut = found.headless and table[0].line < found.first.line and len(table[0].cells) < width
+    names = unique(found.names)
+    unnamed = frozenset(name for name, said in zip(names, found.names, strict=True) if not (said or found.headless))
+    return Dialect(
+        delimiter,
+        names,
+        found.first.line - 1,
+        _decimal([record for record in table if record.line >= found.first.line], delimiter),
+        comment,
+        found.headless,
+        cut,
+        text,
+        found.units,
+        unnamed,
+    )
+
+
+def _comment(lines: Sequence[str]) -> str | None:
+    """What begins a line of comment, if some lines begin so."""
+    return next((mark for line in lines for mark in _COMMENTS if line.lstrip().startswith(mark)), None)
+
+
+def _remark(number: int, line: str, delimiter: str | None, width: int) -> list[Record]:
+    """A line of comment as a record: "%time,x,y", or "# Time [s]    range [m]", of words with blanks inside."""
+    found = some_records([(number, line)], delimiter)
+    if found and len(found[0].cells) == width:
+        return found
+    apart = tuple(cell.strip() for cell in line.replace("\t", "  ").strip().split("  ") if cell.strip())
+    return [Record(number, number, apart)] if len(apart) == width else []
+
+
+def _delimiter(lines: list[tuple[int, str]]) -> str | None:
     """The delimiter that splits most lines into the same number of cells, at least two.
 
     Of equals, the one whose cells are numbers: "1,5;2,5" falls into even pieces at either. Blanks must be clearly
     better: "2024-01-01 10:00,1.5" has one in every line too.
     """
-    lines = lines[:200]
     ranked = [(*_evenness(lines, delimiter), delimiter) for delimiter in _DELIMITERS]
     votes, _, best = max(ranked, key=lambda rank: rank[:2])
     blanks, _ = _evenness(lines, None)
     return None if blanks > 1.2 * votes else best
 
 
-def _evenness(lines: list[str], delimiter: str | None) -> tuple[int, float]:
+def _evenness(lines: list[tuple[int, str]], delimiter: str | None) -> tuple[int, float]:
     """How many lines fall into the usual number of cells, and the share of numbers among their cells."""
-    rows = [[cell.strip() for cell in line.split(delimiter)] for line in lines]
-    width, votes = Counter(len(row) for row in rows).most_common(1)[0]
+    rows = some_records(lines, delimiter)
+    width, _ = usual_width(rows)
     if width < 2:
         return 0, 0.0
-    return votes, sum(is_number(cell) for row in rows for cell in row) / sum(len(row) for row in rows)
+    return _votes(rows), sum(is_number(cell) for row in rows for cell in row.cells) / sum(
+        len(row.cells) for row in rows
+    )
 
 
-def _with_header(
-    path: Path, dialect: Dialect, lines: list[str], table: list[int], cells: dict[int, list[str]], width: int
-) -> Dialect:
-    first = table[0]
-    names: list[str] = []
-    first_cut = False
-    above = [line.lstrip()[1:] for line in lines[:first] if line.strip()]
-    if _is_header(cells[first]) and len(cells[first]) <= width:
-        names, start = cells[first], first + 1
-    elif above and (commented := _above(dialect, above[-1], width)):
-        names, start = commented, first
-    elif len(cells[first]) < width and len(table) > 1:
-        start, first_cut = first + 1, True  # recording began in the middle of a line
-    else:
-        start = first
-    headerless = not names
-    names += [f"c{i + 1}" for i in range(len(names), width)]
-    row = next((cells[i] for i in table if i >= start and len(cells[i]) == width), None)
-    if row is None:
-        raise LogError(f"{path}: there is a header, but no row below it; name a log with rows.")
-    comma = dialect.delimiter != "," and any("," in cell and is_number(cell) for cell in row)
-    return Dialect(dialect.delimiter, _unique(names), start, comma, dialect.comment, headerless, first_cut)
+def _votes(rows: Sequence[Record]) -> int:
+    """How many records have the usual number of cells, or the usual number of the kind that their first cell names."""
+    widths: dict[str, Counter[int]] = defaultdict(Counter)
+    for row in rows:
+        widths[row.cells[0]][len(row.cells)] += 1
+    of_kind = sum(count.most_common(1)[0][1] for count in widths.values())
+    kinds = 1 < len(widths) <= _KINDS and all(count.total() >= _OF_KIND for count in widths.values())
+    return max(usual_width(rows)[1], of_kind if kinds and not any(is_valued(kind) for kind in widths) else 0)
 
 
-def _above(dialect: Dialect, line: str, width: int) -> list[str]:
-    """The names in a comment above the rows: "%time,x,y", or "# Time [s]    range [m]", of words with blanks inside."""
-    for cells in (dialect.split(line), re.split(r"\t|\s{2,}", line.strip())):
-        if len(cells) == width and _is_header(cells):
-            return cells
-    return []
+def _decimal(table: Sequence[Record], delimiter: str | None) -> bool:
+    return has_decimal_comma(cell for record in table for cell in record.cells if delimiter != "," or "," in cell)
 
 
-def _is_header(cells: list[str]) -> bool:
-    """Names, not values: no cell is a number, and not all are blank."""
-    return not any(is_number(cell) for cell in cells) and any(re.search(r"[^\W\d]", cell) for cell in cells)
-
-
-def _unique(names: list[str]) -> tuple[str, ...]:
+def unique(names: Sequence[str]) -> tuple[str, ...]:
+    """Names, c1, c2, ... where there is none, and a number behind one that was there before."""
     seen: Counter[str] = Counter()
     unique = []
     for i, name in enumerate(names):

@@ -52,6 +52,7 @@ class Source:
     `time` and `unit`: the time column and its unit where the format fixes them (RTKLIB does, CSV does not).
     `sensors`: what the columns are, where the format leaves nothing to guess.
     `first_line`: line of the file that row 0 came from, so that an error can name a line; 0 if rows have no lines.
+    `lines`: row -> line, where rows were left out between them; else row n came from line `first_line` + n.
     `units`: the unit of each column whose format says it, spelled as in units.py.
     `times`: the file of its time column, where that is another file.
     `before`: rows of the table in parts of the file that were read before this one.
@@ -70,6 +71,7 @@ class Source:
     table: str = ""
     times: Path | None = None
     before: int = 0
+    lines: Callable[[int], int] | None = None
 
     @property
     def name(self) -> str:
@@ -78,6 +80,8 @@ class Source:
 
     def place(self, row: int) -> str:
         """The place of a row in the file, for messages."""
+        if self.lines is not None:
+            return f"line {self.lines(row)}"
         return f"line {row + self.first_line}" if self.first_line else f"row {row + self.before + 1}"
 
     def any_column(self, name: str) -> pl.Series:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import polars as pl
 
-from sensorfault.logs.readers.dialect import is_number, sniff
+from sensorfault.logs.readers.cells import is_number
+from sensorfault.logs.readers.dialect import sniff
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 
