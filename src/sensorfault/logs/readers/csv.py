@@ -1,6 +1,7 @@
 """CSV and similar: comma, semicolon, tab or blanks between the cells, with a header or without."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal
@@ -23,6 +24,7 @@ from sensorfault.logs.units import known, spelled
 _SAMPLE_ROWS = 1000
 _PART_BYTES = 1 << 24
 _EXACT_IN_FLOAT = 2**53
+_COMMON = ("", "NA", "N/A", "null", "None", "-")  # of the cells that mean no value
 Holds = Literal["text", "whole", "number"]  # what a column's cells are; whole: a float would round them
 _DTYPES = {"text": pl.String(), "whole": pl.Int64(), "number": pl.Float64()}
 _HOLDS: dict[pl.DataType, Holds] = {pl.String(): "text", pl.Int64(): "whole", pl.Float64(): "number"}
@@ -90,7 +92,7 @@ def _table(
     holds = holds or _holds(content, dialect, skip)
     if holds is not None:
         try:
-            frame = _closed(path, content, _parse(content, dialect, skip, holds))
+            frame = _closed(path, content, _parse(content, dialect, skip, holds, missing=_COMMON))
         except pl.exceptions.PolarsError:
             holds = None  # a cell is not of the type of the first rows, or a line is longer than they are
         else:
@@ -195,8 +197,14 @@ def _even(content: bytes) -> bytes:
 
 
 def _parse(
-    content: Path | bytes, dialect: Dialect, skip: int, holds: list[Holds], rows: int | None = None
+    content: Path | bytes,
+    dialect: Dialect,
+    skip: int,
+    holds: list[Holds],
+    rows: int | None = None,
+    missing: Sequence[str] = MISSING,
 ) -> pl.DataFrame:
+    """`missing`: cells without a value; each costs time in every cell."""
     return pl.read_csv(
         content,
         has_header=False,
@@ -206,7 +214,7 @@ def _parse(
         schema_overrides={name: _DTYPES[cells] for name, cells in zip(dialect.names, holds, strict=True)},
         comment_prefix=dialect.comment,
         decimal_comma=dialect.decimal_comma and dialect.delimiter != ",",
-        null_values=list(MISSING),
+        null_values=list(missing),
         encoding="utf8-lossy",
         n_rows=rows,
         glob=False,
