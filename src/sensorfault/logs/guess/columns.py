@@ -34,9 +34,7 @@ class Column:
     device: str = ""  # the sensor, where the name of the column says it
 
 
-def measurements(
-    source: Source, time: str | None, clock: Clock
-) -> tuple[list[Column], list[tuple[str, str]]]:
+def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[Column], list[tuple[str, str]]]:
     """Columns that measure something, and the others with the reason why not.
 
     Raises:

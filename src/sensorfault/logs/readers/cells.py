@@ -16,6 +16,7 @@ _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 _VALUE = re.compile(r"[+-]?[.,]?\d|[+-]?(∞|nan|inf)|#", re.IGNORECASE)
 _MOSTLY = 0.5  # share of numbers that makes a column one of numbers
 _POINTS = r"^[+-]?\d+\.\d*$"  # a decimal point
+_GROUPS_COMMA = r"^[+-]?\d{1,3}(?:[.' \u{a0}\u{202f}]\d{3})+(?:,\d*)?$"
 _GROUPS = r"^([+-]?\d{1,3})(?:[,' \u{a0}\u{202f}]\d{3})+(?:\.\d*)?$"
 
 
@@ -53,10 +54,8 @@ def numbers_of(column: pl.Series, comma: bool = False) -> pl.Series:
 
 def _spelled(text: pl.Series, comma: bool) -> pl.Series:
     """Without what parts thousands, and with a point as decimal sign."""
-    if comma:
-        plain = text.str.replace_all(r"[.' \u{a0}\u{202f}](\d{3})", "${1}").str.replace(",", ".", literal=True)
-    else:
-        grouped = text.str.contains(_GROUPS)
-        bare = text.str.replace_all(r"[,' \u{a0}\u{202f}]", "")
-        plain = bare.zip_with(grouped.fill_null(False), text)
+    grouped = text.str.contains(_GROUPS_COMMA if comma else _GROUPS).fill_null(False)
+    parts = r"[.' \u{a0}\u{202f}]" if comma else r"[,' \u{a0}\u{202f}]"
+    plain = text.str.replace_all(parts, "").zip_with(grouped, text) if grouped.any() else text
+    plain = plain.str.replace(",", ".", literal=True) if comma else plain
     return plain.str.replace("∞", "inf", literal=True)

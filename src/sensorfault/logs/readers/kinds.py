@@ -33,10 +33,11 @@ def kind_column(frame: pl.DataFrame, headless: bool) -> str | None:
         column = frame[name]
         if column.dtype != pl.String or column.null_count() or not (i < _WHERE if headless else _NAMES.fullmatch(name)):
             continue
-        counts = column.value_counts()["count"]
-        words = not any(is_valued(kind) for kind in column.unique().head(_MOST))
-        changes = float((column != column.shift(1)).mean() or 0.0)  # type: ignore[arg-type]
-        if words and 2 <= len(counts) <= _MOST and int(counts.min() or 0) >= _FEWEST and changes >= _OFTEN:  # type: ignore[call-overload]
+        counts = Counter(column.to_list())
+        words = not any(is_valued(str(kind)) for kind in counts)
+        changes = int((column != column.shift(1)).sum())
+        many = 2 <= len(counts) <= _MOST and min(counts.values()) >= _FEWEST
+        if words and many and changes >= _OFTEN * len(column):
             return name
     return None
 

@@ -26,8 +26,8 @@ def records(lines: Iterable[tuple[int, str]], delimiter: str | None) -> Iterator
     """
     if delimiter is None:
         for number, line in lines:
-            cells = tuple((quoted or bare).strip() for quoted, bare in _TOKEN.findall(line))
-            yield Record(number, number, cells)
+            found = tuple((quoted or bare).strip() for quoted, bare in _TOKEN.findall(line))
+            yield Record(number, number, found)
         return
     numbers: list[int] = []
 
