@@ -11,10 +11,13 @@ MISSING = (
 )
 PADDING = " \t\r\"'"
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(([,' \u00a0\u202f])\d{3}(\2\d{3})*(\.\d*)?|\.\d{3}(\.\d{3})*(,\d*)?)")
+_GROUPED = re.compile(
+    r"[+-]?[1-9]\d{0,2}(([' \u00a0\u202f])\d{3}(\2\d{3})*([.,]\d*)?|(,\d{3})+(\.\d*)?|(\.\d{3})+(,\d*)?)"
+)
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 _VALUE = re.compile(r"[+-]?[.,]?\d|[+-]?(∞|nan|inf)|#", re.IGNORECASE)
 _MOSTLY = 0.5  # share of numbers that makes a column one of numbers
+STAMP = r"^(19|20)\d\d[01]\d[0-3]\d[0-2]\d[0-5]\d[0-6]\d\.\d+$"  # 20240501100000.5: a float would round it
 _POINTS = r"^[+-]?\d+\.\d*$"  # a decimal point
 _GROUPS_COMMA = r"^[+-]?\d{1,3}(?:[.' \u{a0}\u{202f}]\d{3})+(?:,\d*)?$"
 _GROUPS = r"^([+-]?\d{1,3})(?:[,' \u{a0}\u{202f}]\d{3})+(?:\.\d*)?$"
@@ -43,6 +46,8 @@ def numbers_of(column: pl.Series, comma: bool = False) -> pl.Series:
     text = column.str.strip_chars(PADDING)
     text = text.set(text.is_in(MISSING), None)
     known = len(text) - text.null_count()
+    if known and text.str.contains(STAMP).all():
+        return text
     comma = comma and (text.str.contains(",", literal=True) | ~text.str.contains(_POINTS)).any()
     number = (_spelled(text, True) if comma else text).cast(pl.Float64, strict=False)
     left = number.is_null() & text.is_not_null()

@@ -16,7 +16,7 @@ _DELIMITERS = (",", ";", "\t", "|")
 _COMMENTS = ("#", "%", "//")
 _DATE = re.compile(r"[\d:./TZ+-]+")
 _VOTERS = 200  # lines that vote, the last ones of the beginning: above them may stand anything
-_EVEN = 0.8  # share of the records that have the usual number of cells, unless there are several kinds
+_EVEN = 0.95  # share of the records that have the usual number of cells, unless there are several kinds
 _KINDS, _OF_KIND = 16, 3  # most kinds, and fewest records of one, in the beginning
 
 
@@ -71,7 +71,7 @@ def sniff(path: Path) -> Dialect:
         for record in _remark(i, line.lstrip().removeprefix(comment), delimiter, width)
     ]
     voters = table[-_VOTERS:]
-    if votes < _EVEN * len(voters) and _votes(voters) >= _EVEN * len(voters):
+    if votes < _EVEN * len(voters) <= _votes(voters):
         return Dialect(delimiter, (), 0, _decimal(table, delimiter), comment, True, False, text, kinds=True)
     return _described(path, text, comment, delimiter, table, comments, width)
 
