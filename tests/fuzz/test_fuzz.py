@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from fuzz.dialect_reading import ENOUGH, read_drawn
 from fuzz.reading import Fuzzed
 from fuzz.small import SMALL
 from sensorfault.logs import read
@@ -33,6 +34,12 @@ def test_the_sound_file_is_a_log(tmp_path: Path, title: str) -> None:
     log = read(path)
     assert len(log) >= 3
     assert not log.damage
+
+
+def test_text_tables_in_any_dialect(tmp_path: Path) -> None:
+    tally = read_drawn(tmp_path, FILES)
+    assert tally.read + tally.refused.total() >= FILES
+    assert tally.share >= ENOUGH, tally.refused.most_common(5)
 
 
 def test_every_format_is_fuzzed() -> None:

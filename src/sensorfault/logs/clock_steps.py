@@ -62,7 +62,7 @@ def _wrapped(step: float, period: float, since: float) -> float | None:
 
 def _spoken(length_s: float) -> str:
     days = length_s / 86_400
-    return f"{length_s:.6g} s" if days < 0.5 else f"{days:.6g} days"
+    return f"{length_s:.6g} s" if days < 0.5 else f"{days:.4g} days"
 
 
 def spread(source: Source, column: str, time: Float[np.ndarray, " T"]) -> tuple[Float[np.ndarray, " T"], list[str]]:

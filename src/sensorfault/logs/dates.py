@@ -34,7 +34,7 @@ _TIDY = (  # what people and programs write around a date
     (r"(?i)([ap])\.m\.", "${1}m"),
     (r"(?i)(\d)([ap]m)$", "${1} ${2}"),
     (r"(\d) ?(?:GMT|UTC)?([+-]\d\d):?(\d\d)( \d{4})?$", "${1}${2}${3}${4}"),
-    (r"(\d) ?(Z|UTC|GMT)$", "${1}"),
+    (r"(\d) ?(Z|UTC|GMT)( \d{4})?$", "${1}${3}"),
     (r"([T :]\d\d:\d\d(?::\d\d(?:\.\d+)?)?[+-]\d\d)$", "${1}00"),
 )
 
@@ -57,7 +57,7 @@ class Form:
 
 def microseconds(cells: pl.Series, form: str) -> pl.Series:
     """Unix time [us], or the time since midnight where the form has no day; null where a cell cannot be read so."""
-    cells = _text(cells)
+    cells = as_text(cells)
     found = _read(cells, form)
     missed = found.is_null() & cells.is_not_null()
     if missed.any():
@@ -67,7 +67,7 @@ def microseconds(cells: pl.Series, form: str) -> pl.Series:
 
 def form_of(cells: pl.Series) -> Form | None:
     """The form of a column of text; day first or month first is decided over the whole column."""
-    known = _text(cells).drop_nulls()
+    known = as_text(cells).drop_nulls()
     sample = _tidy(known.gather_every(max(1, len(known) // _SAMPLE)).head(_SAMPLE)).unique(maintain_order=True)
     if not len(sample):
         return None
@@ -90,9 +90,11 @@ def form_of_cells(cells: Sequence[str]) -> Form | None:
     return form_of(pl.Series(list(cells), dtype=pl.String))
 
 
-def _text(cells: pl.Series) -> pl.Series:
-    """As text; a number such as 20240501100000.5 with all of its digits."""
+def as_text(cells: pl.Series) -> pl.Series:
+    """As text; a number such as 20240501 without a point, or 20240501100000.5 with all of its digits."""
     if cells.dtype.is_float():
+        if (cells == cells.round()).all():
+            return cells.cast(pl.Int64, strict=False).cast(pl.String)
         whole = cells.floor().cast(pl.Int64, strict=False)
         part = ((cells - cells.floor()) * 1000).round().cast(pl.Int64, strict=False).clip(0, 999)
         return whole.cast(pl.String) + "." + part.cast(pl.String).str.zfill(3)

@@ -3,7 +3,7 @@
 import numpy as np
 import polars as pl
 
-from sensorfault.logs.dates import microseconds
+from sensorfault.logs.dates import as_text, microseconds
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.readers.gps_time import WEEK_S, unix_from_gps_week
 from sensorfault.logs.readers.source import Source
@@ -78,7 +78,7 @@ def unreadable(source: Source, file: FileEntry, time: np.ndarray) -> tuple[int, 
 
 def _calendar(cells: pl.Series, more: pl.Series | None, unit: str) -> pl.Series:
     if more is not None:
-        cells = cells.cast(pl.String) + " " + more.cast(pl.String)
+        cells = as_text(cells) + " " + as_text(more)
     if unit != ISO:
         return microseconds(cells, unit)
     found = microseconds(cells, ISO_FORMS[0])

@@ -1,5 +1,6 @@
 """What makes one column a clock: its name, its unit or its form. That it rises makes none."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,7 @@ import polars as pl
 from sensorfault.logs.clock import is_unix
 from sensorfault.logs.dates import form_of, microseconds
 from sensorfault.logs.entries import FileEntry
-from sensorfault.logs.guess.time_names import is_named, unit_by_bracket, unit_by_word
+from sensorfault.logs.guess.time_names import bare, is_named, unit_by_bracket, unit_by_word
 from sensorfault.logs.guess.words import read_name
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.stamps import ISO_FORMS
@@ -22,6 +23,7 @@ _COUNTS = 3  # [whole numbers]: a column that rises by so few counts rows or pac
 _DAYS = (20_000.0, 80_000.0)  # the years 1954 to 2119, in days since 1900
 _DAY_STEP = 1e-3  # [days]: seconds of the day rise faster
 _DIGITS = (19_700_101e6, 21_001_231e6)  # 20240501100000 and the like
+_PLACE = re.compile(r"(^|_)(lat|lon|lng|latitude|longitude|id|seq|index|count|counter|number)(_|$)")
 _USUAL_STEP_S = 0.05
 _BY_SIZE = ("s", "ms", "us", "ns")
 
@@ -62,7 +64,7 @@ def candidate(source: Source, name: str, headed: bool) -> Candidate | None:
     share, back = steps(column)
     if not named and (share < _CERTAIN or _counts(column) or not _regular(column)):
         return None
-    if not named and said is None and headed and (form is None or read_name(name).kind):
+    if not named and said is None and headed and (form is None or read_name(name).kind or _PLACE.search(bare(name))):
         return None  # a longitude, or a distance, that rises
     unit, why = form or "", "by its size"
     if said is not None:

@@ -11,11 +11,15 @@ MISSING = (
 )
 PADDING = " \t\r\"'"
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(([,' \u00a0\u202f])\d{3}(\2\d{3})*(\.\d*)?|\.\d{3}(\.\d{3})*(,\d*)?)")
+_GROUPED = re.compile(
+    r"[+-]?[1-9]\d{0,2}(([' \u00a0\u202f])\d{3}(\2\d{3})*([.,]\d*)?|(,\d{3})+(\.\d*)?|(\.\d{3})+(,\d*)?)"
+)
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 _VALUE = re.compile(r"[+-]?[.,]?\d|[+-]?(∞|nan|inf)|#", re.IGNORECASE)
 _MOSTLY = 0.5  # share of numbers that makes a column one of numbers
+STAMP = r"^(19|20)\d\d[01]\d[0-3]\d[0-2]\d[0-5]\d[0-6]\d\.\d+$"  # 20240501100000.5: a float would round it
 _POINTS = r"^[+-]?\d+\.\d*$"  # a decimal point
+_GROUPS_COMMA = r"^[+-]?\d{1,3}(?:[.' \u{a0}\u{202f}]\d{3})+(?:,\d*)?$"
 _GROUPS = r"^([+-]?\d{1,3})(?:[,' \u{a0}\u{202f}]\d{3})+(?:\.\d*)?$"
 
 
@@ -42,6 +46,8 @@ def numbers_of(column: pl.Series, comma: bool = False) -> pl.Series:
     text = column.str.strip_chars(PADDING)
     text = text.set(text.is_in(MISSING), None)
     known = len(text) - text.null_count()
+    if known and text.str.contains(STAMP).all():
+        return text
     comma = comma and (text.str.contains(",", literal=True) | ~text.str.contains(_POINTS)).any()
     number = (_spelled(text, True) if comma else text).cast(pl.Float64, strict=False)
     left = number.is_null() & text.is_not_null()
@@ -53,10 +59,8 @@ def numbers_of(column: pl.Series, comma: bool = False) -> pl.Series:
 
 def _spelled(text: pl.Series, comma: bool) -> pl.Series:
     """Without what parts thousands, and with a point as decimal sign."""
-    if comma:
-        plain = text.str.replace_all(r"[.' \u{a0}\u{202f}](\d{3})", "${1}").str.replace(",", ".", literal=True)
-    else:
-        grouped = text.str.contains(_GROUPS)
-        bare = text.str.replace_all(r"[,' \u{a0}\u{202f}]", "")
-        plain = bare.zip_with(grouped.fill_null(False), text)
+    grouped = text.str.contains(_GROUPS_COMMA if comma else _GROUPS).fill_null(False)
+    parts = r"[.' \u{a0}\u{202f}]" if comma else r"[,' \u{a0}\u{202f}]"
+    plain = text.str.replace_all(parts, "").zip_with(grouped, text) if grouped.any() else text
+    plain = plain.str.replace(",", ".", literal=True) if comma else plain
     return plain.str.replace("∞", "inf", literal=True)

@@ -1,5 +1,6 @@
 """How a text table is written: delimiter, comments, header, units, first and last whole row."""
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,8 +14,9 @@ from sensorfault.logs.table import LogError
 
 _DELIMITERS = (",", ";", "\t", "|")
 _COMMENTS = ("#", "%", "//")
+_DATE = re.compile(r"[\d:./TZ+-]+")
 _VOTERS = 200  # lines that vote, the last ones of the beginning: above them may stand anything
-_EVEN = 0.8  # share of the records that have the usual number of cells, unless there are several kinds
+_EVEN = 0.95  # share of the records that have the usual number of cells, unless there are several kinds
 _KINDS, _OF_KIND = 16, 3  # most kinds, and fewest records of one, in the beginning
 
 
@@ -69,7 +71,7 @@ def sniff(path: Path) -> Dialect:
         for record in _remark(i, line.lstrip().removeprefix(comment), delimiter, width)
     ]
     voters = table[-_VOTERS:]
-    if votes < _EVEN * len(voters) and _votes(voters) >= _EVEN * len(voters):
+    if votes < _EVEN * len(voters) <= _votes(voters):
         return Dialect(delimiter, (), 0, _decimal(table, delimiter), comment, True, False, text, kinds=True)
     return _described(path, text, comment, delimiter, table, comments, width)
 
@@ -125,23 +127,22 @@ def _delimiter(lines: list[tuple[int, str]]) -> str | None:
     """The delimiter that splits most lines into the same number of cells, at least two.
 
     Of equals, the one whose cells are numbers: "1,5;2,5" falls into even pieces at either. Blanks must be clearly
-    better: "2024-01-01 10:00,1.5" has one in every line too.
+    better: "2024-01-01 10:00,1.5" has one in every line too, and "1,5 2,5" has commas.
     """
     ranked = [(*_evenness(lines, delimiter), delimiter) for delimiter in _DELIMITERS]
-    votes, _, best = max(ranked, key=lambda rank: rank[:2])
-    blanks, _ = _evenness(lines, None)
-    return None if blanks > 1.2 * votes else best
+    votes, share, best = max(ranked, key=lambda rank: rank[:2])
+    blanks, numbers = _evenness(lines, None)
+    return None if blanks > 1.2 * votes or (blanks > 0.9 * votes and numbers > share + 0.3) else best
 
 
 def _evenness(lines: list[tuple[int, str]], delimiter: str | None) -> tuple[int, float]:
-    """How many lines fall into the usual number of cells, and the share of numbers among their cells."""
+    """How many lines fall into the usual number of cells, and the share of numbers and dates among their cells."""
     rows = some_records(lines, delimiter)
     width, _ = usual_width(rows)
     if width < 2:
         return 0, 0.0
-    return _votes(rows), sum(is_number(cell) for row in rows for cell in row.cells) / sum(
-        len(row.cells) for row in rows
-    )
+    cells = [cell for row in rows for cell in row.cells]
+    return _votes(rows), sum(is_number(cell) or _DATE.fullmatch(cell) is not None for cell in cells) / len(cells)
 
 
 def _votes(rows: Sequence[Record]) -> int:

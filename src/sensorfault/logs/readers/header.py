@@ -57,7 +57,6 @@ def header_of(table: Sequence[Record], comments: Sequence[Record], width: int) -
         return None
     first = table[at]
     above = [record for record in table[:at] if _are_names(record.cells)]
-    above = [record for record in above if len(record.cells) <= width or _fits(record, width)]
     remarks = [one for one in comments if one.last < first.line and _are_names(one.cells) and len(one.cells) > 1]
     units: tuple[str, ...] = ()
     lowest = above[-1] if above else None
@@ -116,11 +115,6 @@ def _are_units(cells: Sequence[str]) -> bool:
 
 def _are_types(cells: Sequence[str]) -> bool:
     return all(_TYPES.fullmatch(cell.lower()) for cell in cells)
-
-
-def _fits(record: Record, width: int) -> bool:
-    """Whether only empty cells stand behind the last column."""
-    return not any(record.cells[width:])
 
 
 def _grouped(cells: Sequence[str], group: Sequence[str]) -> tuple[str, ...]:

@@ -33,11 +33,11 @@ def kind_column(frame: pl.DataFrame, headless: bool) -> str | None:
         column = frame[name]
         if column.dtype != pl.String or column.null_count() or not (i < _WHERE if headless else _NAMES.fullmatch(name)):
             continue
-        counts = column.value_counts()["count"]
-        words = not any(is_valued(kind) for kind in column.unique().head(_MOST))
-        changes = float((column != column.shift(1)).mean() or 0.0)  # type: ignore[arg-type]
-        fewest = int(counts.to_numpy().min()) if len(counts) else 0
-        if words and 2 <= len(counts) <= _MOST and fewest >= _FEWEST and changes >= _OFTEN:
+        counts = Counter(column.to_list())
+        words = not any(is_valued(str(kind)) for kind in counts)
+        changes = int((column != column.shift(1)).sum())
+        many = 2 <= len(counts) <= _MOST and min(counts.values()) >= _FEWEST
+        if words and many and changes >= _OFTEN * len(column):
             return name
     return None
 
@@ -66,19 +66,20 @@ def records_of_kinds(path: Path, dialect: Dialect) -> Tables:
     Raises:
         LogError: too many records are unlike the others of their kind.
     """
-    names: dict[str, Sequence[str]] = {}
+    headers: dict[str, Record] = {}
     found: dict[str, list[Record]] = defaultdict(list)
     for record in some_records(_lines(path, dialect), dialect.delimiter):
         kind = record.cells[0] if record.cells else ""
         bare = kind.lstrip("#%/ ")
         if bare and not any(is_valued(cell) for cell in record.cells if cell not in MISSING):
-            names[bare] = record.cells[1:]
+            headers.setdefault(bare, record)
         elif bare == kind and kind:
             found[kind].append(record)
     usual = {kind: Counter(len(one.cells) for one in rows).most_common(1)[0][0] for kind, rows in found.items()}
     good = {kind: [one for one in rows if len(one.cells) == usual[kind]] for kind, rows in found.items()}
     whole = {kind: rows for kind, rows in good.items() if len(rows) >= _FEWEST and usual[kind] > 1}
-    lost = sum(map(len, found.values())) - sum(map(len, whole.values()))
+    names = {kind: one.cells[1:] for kind, one in headers.items() if len(one.cells) == usual.get(kind)}
+    lost = sum(map(len, found.values())) - sum(map(len, whole.values())) + len((headers.keys() & usual) - names.keys())
     if not whole or lost > _LEFT_OUT * sum(map(len, found.values())):
         raise LogError(f"{path}: its lines have different numbers of cells, and no first cell that says why; split it.")
     notes = (f"{path.name}: {counted(lost, 'record')} unlike the others of their kind left out.",) if lost else ()

@@ -92,7 +92,8 @@ def odd_rows(text: pl.DataFrame, numbers: pl.DataFrame) -> np.ndarray:
         lost = _lost(text[name], numbers[name])
         words += lost
         found += numbers[name].is_not_null().to_numpy()
-    return np.asarray((words >= 2) & (found == 0))
+    odd: np.ndarray = (words >= 2) & (found == 0)
+    return odd
 
 
 def odd_cells(name: str, text: pl.DataFrame, numbers: pl.DataFrame, line: Lines) -> list[str]:

@@ -26,8 +26,8 @@ def records(lines: Iterable[tuple[int, str]], delimiter: str | None) -> Iterator
     """
     if delimiter is None:
         for number, line in lines:
-            cells = tuple((quoted or bare).strip() for quoted, bare in _TOKEN.findall(line))
-            yield Record(number, number, cells)
+            found = tuple((quoted or bare).strip() for quoted, bare in _TOKEN.findall(line))
+            yield Record(number, number, found)
         return
     numbers: list[int] = []
 
@@ -36,8 +36,8 @@ def records(lines: Iterable[tuple[int, str]], delimiter: str | None) -> Iterator
             numbers.append(number)
             yield line.replace("\r", " ") + "\n"
 
-    for row in csv.reader(seen(), delimiter=delimiter, skipinitialspace=True):
-        yield Record(numbers[0], numbers[-1], tuple(cell.strip() for cell in row))
+    for cells in csv.reader(seen(), delimiter=delimiter, skipinitialspace=True):
+        yield Record(numbers[0], numbers[-1], tuple(cell.strip() for cell in cells))
         numbers.clear()
 
 
