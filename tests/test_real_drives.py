@@ -149,7 +149,7 @@ def test_held_fixes_are_never_a_jam(real_data: Path) -> None:
 def test_the_command_line_names_an_offset_and_nobody_else(
     real_data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By the default method, which sees it come and go: what lasts between is the channel's own word again."""
+    """By conditioning, which sees it come and go: what lasts between is the channel's own word again."""
     folder = real_data / "road" / "dresden_50hz"
     known = drive(folder)
     cut = float(known.rest.time[0])
@@ -160,7 +160,8 @@ def test_the_command_line_names_an_offset_and_nobody_else(
         return capsys.readouterr().out
 
     model, faulty = str(tmp_path / "car.sensorfault"), str(tmp_path / "faulty.csv")
-    run("fit", str(folder), "--until", f"{cut - 1e-3:.6f}", "--held-out", "0", "--out", model)
+    method = "--method", "relative-conditioning"
+    run("fit", str(folder), *method, "--until", f"{cut - 1e-3:.6f}", "--held-out", "0", "--out", model)
     start = round(cut) + 20
     run("inject", str(folder), "--fault", f"offset:gyro.z:{start}:5:20sigma", "--out", faulty)
     events = json.loads(run("detect", faulty, "--model", model, "--json", "-"))["events"]

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from sensorfault.cli import show
 from sensorfault.core.times import clock
 
@@ -121,7 +123,14 @@ def _memory() -> float:
 
 def _print(summary: str, notes: Sequence[str]) -> None:
     show.say(summary)
-    for note in notes[:NOTES_SHOWN]:
+    most = None if _is_info() else NOTES_SHOWN
+    for note in notes[:most]:
         show.say(f"  {note}")
-    if len(notes) > NOTES_SHOWN:
+    if most is not None and len(notes) > most:
         show.say(f"  {len(notes) - NOTES_SHOWN} more notes: 'sensorfault info' and --json have all.")
+
+
+def _is_info() -> bool:
+    """Whether the verb is the one that is asked for all that reading found."""
+    context = click.get_current_context(silent=True)
+    return context is not None and context.info_name == "info"
