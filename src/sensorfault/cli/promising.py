@@ -63,9 +63,9 @@ def _inertial(log: "Log", nothing: "NothingToCompare", pauses: tuple[str, ...]) 
     from sensorfault.calibration.data_screening import leave_out
     from sensorfault.logs import LogError
     from sensorfault.methods.inertial.needs import in_a_row
-    from sensorfault.runtime.streaming import beginning_s
 
-    early, _ = leave_out(log.measurements().between(end_s=beginning_s(log, LEARN)))
+    half_s = float(log.time[0]) + LEARN * log.duration_s  # where detect cuts it
+    early, _ = leave_out(log.measurements().between(end_s=half_s))
     try:
         training = in_a_row(fitting.INERTIAL, early) if len(early) > 1 else None
     except LogError:
