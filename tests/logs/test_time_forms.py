@@ -120,7 +120,7 @@ def test_a_date_that_can_be_read_in_two_ways_is_said(tmp_path: Path) -> None:
 )
 def test_what_rises_is_no_clock(tmp_path: Path, column: tuple[str, Callable[[int], str]]) -> None:
     name, cell = column
-    with pytest.raises(LogError, match=r"there is no time column: .* \(--rate HZ\)"):
+    with pytest.raises(LogError, match=r"there is no time column: "):
         guess(put(tmp_path, f"{name},ax", [f"{cell(k)},{WAVE[k]}" for k in range(ROWS)]))
     lines = [f"{cell(k)},{clock(k)},{WAVE[k]}" for k in range(ROWS)]
     assert guess(put(tmp_path, f"{name},time,ax", lines)).files[0].time == "time"
@@ -128,7 +128,7 @@ def test_what_rises_is_no_clock(tmp_path: Path, column: tuple[str, Callable[[int
 
 def test_a_time_that_cannot_be_read_is_named_and_nothing_stands_in_for_it(tmp_path: Path) -> None:
     lines = [f"tick{'x' * k},{1_700_000_000 + k / 10:.1f},{WAVE[k]}" for k in range(ROWS)]
-    with pytest.raises(LogError, match=r"line 2, column 'time' holds 'tick', .* 10:00:00\.1; .* \(--rate HZ\)"):
+    with pytest.raises(LogError, match=r"line 2, column 'time' holds 'tick', .* 10:00:00\.1; .*"):
         guess(put(tmp_path, "time,x,ax", lines))
 
 

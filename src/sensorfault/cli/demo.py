@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import click
-from click.core import ParameterSource
 
 from sensorfault.cli import detecting, limits, options, show
 
@@ -18,8 +17,7 @@ from sensorfault.cli import detecting, limits, options, show
 @options.method_option
 @options.seed_option
 @options.json_option
-@click.pass_context
-def command(context: click.Context, out: Path, flight: bool, method: str, seed: int, json_path: str | None) -> None:
+def command(out: Path, flight: bool, method: str | None, seed: int, json_path: str | None) -> None:
     """Simulate a 10-minute drive, inject sensor faults, and detect them.
 
     The faults are spikes, offsets, frozen and missing values (Min et al. 2021), in the part of the drive that the
@@ -39,8 +37,7 @@ def command(context: click.Context, out: Path, flight: bool, method: str, seed: 
 
     require("`sensorfault demo`", "polars", "plotly")
     scenario = FLIGHT if flight else DRIVE
-    if context.get_parameter_source("method") == ParameterSource.DEFAULT:
-        method = scenario.method
+    method = method or scenario.method
     recipe(method)
     out.mkdir(parents=True, exist_ok=True)
     with show.progress() as bar:

@@ -20,7 +20,7 @@ def pauses_of(time: Float[np.ndarray, " T"], period_s: float) -> Pauses:
     return np.column_stack([time[long], time[long + 1]])
 
 
-def shared_pauses(times: Sequence[Float[np.ndarray, " T"]], periods_s: Sequence[float], tick_s: float) -> Pauses:
+def shared_pauses(times: Sequence[np.ndarray], periods_s: Sequence[float], tick_s: float) -> Pauses:
     """Times without a row of any file, in which at least two that were alive should have written one.
 
     Where only one should have, it may as well be a dropout of that one.

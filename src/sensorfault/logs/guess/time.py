@@ -38,7 +38,7 @@ def guess_time(source: Source, rate_hz: float | None = None) -> FileEntry:
             return FileEntry(rate_hz=rate_hz, why="rows a second, as given")
         raise unread or LogError(
             f"{source.path}: there is no time column: no column is a clock by its name, its unit or its form; name one "
-            "in vehicle.toml, or give the rows a second of a table without a clock (--rate HZ)."
+            "in vehicle.toml."
         )
     best = max(range(len(able)), key=lambda i: (*able[i].rank, -i))
     return able[best].file
@@ -63,6 +63,6 @@ def _unread(source: Source, found: list[Candidate]) -> LogError | None:
         return LogError(
             f"{source.path}: {source.place(row)}, column '{name}' holds '{cells[row]}', which is no time that can be "
             f"read. Times are read as {READABLE}; write another form into vehicle.toml (unit = "
-            '"%d.%m.%Y %H:%M:%S"), or give the rows a second (--rate HZ).'
+            '"%d.%m.%Y %H:%M:%S").'
         )
     return None
