@@ -1,5 +1,6 @@
 """Files appear whole or not at all, and never in place of what a command reads."""
 
+import errno
 import os
 import re
 import stat
@@ -22,7 +23,7 @@ def appearing(path: Path) -> Iterator[Path]:
     with _called(path):
         target = Path(os.path.realpath(path))
         if reason := no_output(target):
-            raise OSError(0, reason, str(path))
+            raise OSError(errno.EISDIR if target.is_dir() else errno.EINVAL, _spoken(target, reason), str(path))
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=target.suffix)
     os.close(handle)
     temporary = Path(name)
@@ -35,6 +36,10 @@ def appearing(path: Path) -> Iterator[Path]:
             temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _spoken(path: Path, reason: str) -> str:
+    return os.strerror(errno.EISDIR) if path.is_dir() else reason
 
 
 def no_output(path: Path) -> str:
@@ -90,5 +95,6 @@ def _called(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        error.filename, error.filename2 = str(path), None
+        if error.errno is not None:
+            error.filename, error.filename2 = str(path), None
         raise

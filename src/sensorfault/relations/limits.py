@@ -34,7 +34,7 @@ class Bounds:
 # A steering turns a car by a kinematic model, which real tyres do not follow, and no real log of turns has one. An
 # airspeed differs from the speed over ground by the wind, which simulated flights lack.
 LEAST = {"steering": Bounds(0.1, 0.2), "airspeed": Bounds(0.6, 1.2)}
-ByTest = dict[str, tuple[Test, list[Float[np.ndarray, " T"]]]]  # each test, with its changes in the pieces
+ByTest = dict[str, tuple[Test, list[np.ndarray]]]  # each test, with its changes in the pieces
 
 
 @dataclass
