@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sensorfault.logs import Log, LogError, VehicleFile, read
+from sensorfault.logs import Log, LogError, VehicleFile, guess, read
 from sensorfault.logs.clock import _longest_rise
 
 VEHICLE = '[file.log]\ntime = "t"\nunit = "{unit}"\n[sensor.s.channel]\na = {{ column = "a" }}\n'
@@ -112,3 +112,16 @@ def test_dates_and_times(tmp_path: Path, zone: str, between: str) -> None:
 def test_a_date_that_is_none_is_named(tmp_path: Path) -> None:
     with pytest.raises(LogError, match=r"line 3, column 't' holds 'noon'"):
         log_of(tmp_path, ["2026-11-23T12:00:00", "noon", "2026-11-23T12:00:01"], "iso8601")
+
+
+@pytest.mark.parametrize(("unit", "zero"), [("filetime", 11_644_473_600), ("ticks", 62_135_596_800)])
+def test_ticks_of_100_ns_are_known_by_their_size(tmp_path: Path, unit: str, zero: int) -> None:
+    times = [(1_714_557_600 + zero) * 10_000_000 + 1_000_000 * k for k in range(50)]
+    path = tmp_path / "log.csv"
+    path.write_text("time,ax\n" + "".join(f"{time},{k % 7}.5\n" for k, time in enumerate(times)))
+    known = guess(path)
+    assert known.files[0].unit == unit
+    assert VehicleFile.parse(known.to_toml()).files[0].unit == unit
+    log = read(path)
+    np.testing.assert_allclose(log.time, np.arange(50) / 10, atol=1e-9)
+    assert log.epoch_s == 1_714_557_600.0

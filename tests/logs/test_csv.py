@@ -132,3 +132,18 @@ def test_random_tables_against_the_standard_reader(tmp_path: Path) -> None:
         with path.open(newline="") as file:
             rows = [tuple(float(cell) for cell in row) for row in list(standard_csv.reader(file))[1:]]
         expect(path, rows=rows)
+
+
+@pytest.mark.parametrize("end", ["", "\n"])
+def test_a_remark_may_be_the_last_line(tmp_path: Path, end: str) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("time,a,b\n" + "".join(f"{t},{a},{b}\n" for t, a, b in ROWS) + "# that was all" + end)
+    expect(path)
+
+
+def test_days_since_the_year_0_in_a_column_of_that_name(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("datenum,a\n" + "".join(f"{739373.4166666667 + k / 864000:.10f},{k % 5}.5\n" for k in range(50)))
+    log = read(path)
+    np.testing.assert_allclose(log.time, np.arange(50) / 10, atol=1e-4)
+    assert log.epoch_s == pytest.approx(1_714_557_600.0, abs=1e-3)

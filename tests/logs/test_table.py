@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,15 @@ def test_columns_by_name() -> None:
         log().index("z")
     with pytest.raises(LogError, match="no sensor is called 'lidar'; take one of gyro, gnss, magnetometer"):
         log().of("lidar")
+
+
+def test_how_often_a_channel_has_a_new_value_and_whether_it_changes() -> None:
+    some = log()
+    still = replace(some, value=np.where(np.isnan(some.value), np.nan, 7.0), fresh=some.fresh & (some.value != 10))
+    np.testing.assert_array_equal(some.measured, [1.0, 1.0, 0.75])
+    np.testing.assert_array_equal(still.measured, [1.0, 0.5, 0.75])
+    assert some.changes.all()
+    assert not still.changes.any()
 
 
 def test_a_span_and_a_choice() -> None:

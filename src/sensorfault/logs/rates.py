@@ -20,5 +20,7 @@ def hold_s(log: Log) -> Float[np.ndarray, " C"]:
 
 def complete(log: Log, watched: Bool[np.ndarray, " C"]) -> Bool[np.ndarray, " T"]:
     """Rows in which every watched channel has a new value."""
-    rows: Bool[np.ndarray, " T"] = (log.fresh & np.isfinite(log.value))[:, watched].all(axis=1)
+    rows = np.ones(len(log), bool)
+    for i in np.flatnonzero(watched):  # much faster than along the short axis
+        rows &= log.arrived[:, i]
     return rows

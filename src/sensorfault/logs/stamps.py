@@ -8,7 +8,15 @@ from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.readers.gps_time import WEEK_S, unix_from_gps_week
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
-from sensorfault.logs.time_units import DAY_ZERO, ISO, JOINED, PER_SECOND, is_calendar
+from sensorfault.logs.time_units import (
+    DAY_ZERO,
+    ISO,
+    JOINED,
+    PER_SECOND,
+    TICK_ZERO,
+    TICKS_PER_SECOND,
+    is_calendar,
+)
 
 ISO_FORMS = ("%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%d %H:%M:%S%.f", "%Y-%m-%dT%H:%M:%S%.f%z", "%Y-%m-%d %H:%M:%S%.f%z")
 DAY_S = 86_400.0
@@ -44,6 +52,8 @@ def seconds(source: Source, file: FileEntry) -> tuple[float, np.ndarray]:
     since: np.ndarray = (cells - first).cast(pl.Float64).to_numpy()
     if unit in DAY_ZERO:
         return (first - DAY_ZERO[unit]) * DAY_S, since * DAY_S
+    if unit in TICK_ZERO:
+        return (first - TICK_ZERO[unit]) / TICKS_PER_SECOND, since / TICKS_PER_SECOND
     return float(first) / PER_SECOND[unit], since / PER_SECOND[unit]
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -142,6 +143,24 @@ class Log:
         No sensor has a value there, and nothing is said of any.
         """
         return pauses_of(self.time, self.period_s)
+
+    @cached_property
+    def arrived(self) -> Bool[np.ndarray, "T C"]:
+        """Where a channel has a new value."""
+        arrived: Bool[np.ndarray, "T C"] = self.fresh & np.isfinite(self.value)
+        return arrived
+
+    @cached_property
+    def measured(self) -> Float[np.ndarray, " C"]:
+        """The share of ticks in which a channel has a new value."""
+        return np.array([np.count_nonzero(channel) for channel in self.arrived.T]) / max(1, len(self))
+
+    @cached_property
+    def changes(self) -> Bool[np.ndarray, " C"]:
+        """Whether the new values of a channel are not all the same."""
+        most = np.max(self.value, axis=0, initial=-np.inf, where=self.arrived)
+        changes: Bool[np.ndarray, " C"] = most > np.min(self.value, axis=0, initial=np.inf, where=self.arrived)
+        return changes
 
     def index(self, path: str) -> int:
         """Column of the channel `sensor.channel`; the channel's name alone is enough where it is unique.

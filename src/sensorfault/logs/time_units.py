@@ -2,6 +2,8 @@
 
 PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "min": 1 / 60, "h": 1 / 3600}
 DAY_ZERO = {"excel": 25_569, "datenum": 719_529}  # what days since 1900, or since the year 0, count at 1970
+TICK_ZERO = {"filetime": 116_444_736_000_000_000, "ticks": 621_355_968_000_000_000}  # what 100 ns count at 1970
+TICKS_PER_SECOND = 10_000_000
 JOINED = {
     "s+ms": ("s", "ms"),
     "s+us": ("s", "us"),
@@ -18,7 +20,7 @@ TIME_WORDS = {
     **dict.fromkeys(("min", "minute", "minutes"), "min"),
     **dict.fromkeys(("h", "hr", "hour", "hours"), "h"),
 }
-TIME_UNITS = (*PER_SECOND, *DAY_ZERO, *JOINED, ISO)
+TIME_UNITS = (*PER_SECOND, *DAY_ZERO, *TICK_ZERO, *JOINED, ISO)
 
 
 def is_time_unit(unit: str) -> bool:
@@ -33,4 +35,4 @@ def is_calendar(unit: str) -> bool:
 
 def has_date(unit: str) -> bool:
     """Whether a reading in this unit says which day it is."""
-    return unit in DAY_ZERO or unit == ISO or "%d" in unit or unit.startswith("week")
+    return unit in (*DAY_ZERO, *TICK_ZERO, ISO) or "%d" in unit or unit.startswith("week")

@@ -13,7 +13,7 @@ from sensorfault.logs.guess.time_names import bare, is_named, unit_by_bracket, u
 from sensorfault.logs.guess.words import read_name
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.stamps import ISO_FORMS
-from sensorfault.logs.time_units import DAY_ZERO, ISO, PER_SECOND, is_calendar
+from sensorfault.logs.time_units import DAY_ZERO, ISO, PER_SECOND, TICK_ZERO, TICKS_PER_SECOND, is_calendar
 
 _FORWARD = 0.8  # share of the steps that must be forward
 _SELDOM_BACK = 0.02  # of a clock that also stands still
@@ -61,18 +61,18 @@ def candidate(source: Source, name: str, headed: bool) -> Candidate | None:
         return None
     said = (unit_by_bracket(name) or unit_by_bracket(f"[{source.units.get(name, '')}]")) if headed else None
     form = said or unit_by_form(column, named)
+    if not named and said is None and headed and (form is None or read_name(name).kind or _PLACE.search(bare(name))):
+        return None  # a longitude, or a distance, that rises
     share, back = steps(column)
     if not named and (share < _CERTAIN or _counts(column) or not _regular(column)):
         return None
-    if not named and said is None and headed and (form is None or read_name(name).kind or _PLACE.search(bare(name))):
-        return None  # a longitude, or a distance, that rises
     unit, why = form or "", "by its size"
     if said is not None:
         why = "by its name"
     elif form is None:
         unit, why = unit_by_word(name) or _usual_unit(column), "by name and usual interval"
     how = "by its name" if named else "by its unit" if said is not None else "by its form"
-    sure = unit in DAY_ZERO or is_calendar(unit) or _is_unix(column, unit)
+    sure = unit in (*DAY_ZERO, *TICK_ZERO) or is_calendar(unit) or _is_unix(column, unit)
     return Candidate(
         FileEntry(time=name, unit=unit, why=f"{how}; unit {'as Unix time' if sure and not said else why}"),
         named or said is not None,
@@ -110,15 +110,20 @@ def unit_by_form(column: pl.Series, named: bool) -> str | None:
     unix = next((unit for unit in _BY_SIZE if _is_unix(known, unit)), None)
     if unix is not None or not len(known):
         return unix
+    ticks = (unit for unit, zero in TICK_ZERO.items() if is_unix((float(known[0]) - zero) / TICKS_PER_SECOND))
+    if (tick := next(ticks, None)) is not None:
+        return tick
     least, most = float(known.min()), float(known.max())  # type: ignore[arg-type]
     if _DIGITS[0] <= least and most < _DIGITS[1] * 1000:
         form = form_of(known)
         return None if form is None else form.format
+    if not named:
+        return None
     step = np.diff(known.cast(pl.Float64).to_numpy())
     slow = len(step) > 0 and 0 < float(np.median(step)) < _DAY_STEP
     offset = {"excel": 0, "datenum": DAY_ZERO["datenum"] - DAY_ZERO["excel"]}
     days = (unit for unit, zero in offset.items() if _DAYS[0] <= least - zero and most - zero < _DAYS[1])
-    return next(days, None) if named and slow else None
+    return next(days, None) if slow else None
 
 
 def _is_unix(column: pl.Series, unit: str) -> bool:

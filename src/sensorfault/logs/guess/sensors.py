@@ -10,6 +10,7 @@ from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.guess import units
 from sensorfault.logs.guess.columns import BEACON, Column, beacons_of
 from sensorfault.logs.guess.devices import Device, find_devices
+from sensorfault.logs.held import any_of
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.units import to_si
 
@@ -28,6 +29,7 @@ _USUAL_UNIT = {
 }  # fmt: skip
 _FROM_GNSS = ("speed", "velocity", "position", "height")  # and a heading that is a course
 _COURSES = ("course", "heading", "track")
+_ROWS_OF_A_UNIT = 50_000  # as many show the size of a sensor's values
 _NO_VALUE = -1.0  # a usual mark for "no value" among lengths and the like
 _WANDERS = 3.0  # halves whose levels differ by more than so many spreads are of something that wanders
 
@@ -69,7 +71,7 @@ def _part(column: Column, columns: Sequence[Column], has_position: bool) -> str:
 
 
 def _sensor(device: Device, clock: Clock, place_rad: np.ndarray | None) -> SensorEntry:
-    group = np.column_stack([column.value for column in device.columns])
+    group = _some(np.column_stack([column.value for column in device.columns]))
     channels, seen = [], set()
     for column in device.columns:
         unit, why = _unit(column, group, clock, place_rad)
@@ -83,6 +85,15 @@ def _sensor(device: Device, clock: Clock, place_rad: np.ndarray | None) -> Senso
     reasons = [f"{came.old:.0%} of the rows repeat"] if came.held else []
     reasons += [f"{came.epoch} changes with it"] if came.epoch else []
     return SensorEntry(device.name, tuple(channels), held=came.held, epoch=came.epoch, why="; ".join(reasons))
+
+
+def _some(group: np.ndarray) -> np.ndarray:
+    """Rows with a value, not too many; at random, as each second row may be another device's."""
+    rows = np.flatnonzero(any_of(np.isfinite(group)))
+    if len(rows) <= _ROWS_OF_A_UNIT:
+        return group
+    some: np.ndarray = group[np.random.default_rng(0).choice(rows, _ROWS_OF_A_UNIT, replace=False)]
+    return some
 
 
 def _blind(column: Column) -> str:

@@ -11,7 +11,7 @@ _WORDS = (
     ("ns", r"nanos|nsec|(^|_)ns$"),
     ("s", r"(^|_)(s|secs?|seconds?)(_|$)"),
 )
-_FOREIGN = r"ts|zeit|uhrzeit|datum|zeitstempel|heure|horodatage|fecha|hora|tijd|ora|orario"
+_FOREIGN = r"ts|date_?num|zeit|uhrzeit|datum|zeitstempel|heure|horodatage|fecha|hora|tijd|ora|orario"
 _ALSO = re.compile(rf"(^|_)({_FOREIGN})(_|$)")
 _PLAIN = re.compile(
     rf"((utc|gps|local|device|system|log|sample|recording)_?)?(t|time|date|clock|stamp|time_?stamp|date_?time|{_FOREIGN})"

@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 
 from sensorfault.logs.readers.dialect import Dialect, sniff
-from sensorfault.logs.readers.format import Format
+from sensorfault.logs.readers.format import Format, remembering
 from sensorfault.logs.readers.kinds import kind_column, of_kinds, records_of_kinds
 from sensorfault.logs.readers.odd import lines_of
 from sensorfault.logs.readers.parsing import HOLDS, bytes_of, content_of_file, even, table
@@ -111,7 +111,15 @@ def _last_cut(path: Path, dialect: Dialect, frame: pl.DataFrame) -> bool:
         tail = file.read().decode("utf-8", "replace")
     if tail.endswith(("\n", "\r")) or len(frame) < 2:
         return False
-    return len(dialect.split(tail.splitlines()[-1])) < len(dialect.names) - len(dialect.unnamed)
+    last = tail.splitlines()[-1]
+    remark = dialect.comment is not None and last.lstrip().startswith(dialect.comment)
+    return not remark and len(dialect.split(last)) < len(dialect.names) - len(dialect.unnamed)
 
 
-FORMAT = Format("text table", ("*.csv", "*.tsv", "*.txt", "*.dat"), read_tables_of_text, leader=table_timed, parts=True)
+FORMAT = Format(
+    "text table",
+    ("*.csv", "*.tsv", "*.txt", "*.dat"),
+    remembering(read_tables_of_text),
+    leader=table_timed,
+    parts=True,
+)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
 
-from sensorfault.logs.readers.source import Damage, Tables, with_notes
+from sensorfault.logs.readers.source import Damage, Source, Tables, with_notes
 from sensorfault.logs.table import LogError
 
 SUFFIX = ".gz"
@@ -54,8 +54,13 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
             tables = read(file)
         except LogError as error:
             raise LogError(str(error).replace(str(file), str(path))) from None
-    own = {name: replace(source, path=path) for name, source in tables.items()}
+    own = {name: _of_packed(source, path) for name, source in tables.items()}
     return with_notes(own, (), damage)
+
+
+def _of_packed(source: Source, path: Path) -> Source:
+    """The table as one of the packed file. Lines that are looked for in the unpacked one are not known any more."""
+    return replace(source, path=path) if source.lines is None else replace(source, path=path, lines=None, first_line=0)
 
 
 def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:

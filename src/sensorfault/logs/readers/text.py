@@ -6,6 +6,7 @@ from pathlib import Path
 
 from sensorfault.logs.table import LogError
 
+_CONTROLS = bytes(byte for byte in range(32) if not 9 <= byte <= 13)
 _HEAD_BYTES = 1 << 16
 _MOST_BYTES = 1 << 24
 _LINES = 50  # that a beginning should have
@@ -42,9 +43,8 @@ def beginning(path: Path) -> Text:
     if not head.strip():
         raise LogError(f"{path}: the file is empty; name a log with a header and rows.")
     wide = head[:2] in _WIDE
-    if not wide and (
-        b"\0" in head or sum(byte < 9 or 13 < byte < 32 for byte in head[:_HEAD_BYTES]) > len(head) // 100
-    ):
+    plain = head.translate(None, _CONTROLS)
+    if not wide and (b"\0" in head or len(head) - len(plain) > len(head) // 100):
         raise LogError(f"{path}: this is not text although its name says so; export the log as CSV or Parquet.")
     text = _decoded(head)
     old = "\n" not in text and "\r" in text

@@ -26,19 +26,18 @@ def watchable(log: Log, often: float = 0.5) -> tuple[Bool[np.ndarray, " C"], dic
     Raises:
         LogError: no channel is left to watch.
     """
-    measured = log.fresh & np.isfinite(log.value)
     marked = np.array([channel.watch for channel in log.channels], bool)
-    fast = measured.mean(axis=0) >= often
+    fast = log.measured >= often
     if not (fast & marked).any():
-        fast = np.array([_share_outside_dropouts(column) >= often for column in measured.T], bool)
+        fast = np.array([_share_outside_dropouts(column) >= often for column in log.arrived.T], bool)
     watched = np.zeros(len(log.channels), bool)
     reasons: dict[str, str] = {}
     for i, channel in enumerate(log.channels):
         if not channel.watch:
             reasons[channel.path] = "marked watch = false"
         elif not fast[i]:
-            reasons[channel.path] = _too_seldom(measured[:, i])
-        elif np.ptp(log.value[measured[:, i], i]) == 0:
+            reasons[channel.path] = _too_seldom(log.arrived[:, i])
+        elif not log.changes[i]:
             reasons[channel.path] = "constant in the training data"
         else:
             watched[i] = True
