@@ -7,8 +7,10 @@ import numpy as np
 import polars as pl
 import pytest
 
+from logs.small_parts import small_parts
 from sensorfault.logs import Log, LogError, VehicleFile, guess, read
 from sensorfault.logs.dates import form_of, microseconds
+from sensorfault.logs.parts import read_parts
 
 ROWS = 40
 STEP_S = 0.1
@@ -151,3 +153,48 @@ def test_a_second_column_needs_a_unit_with_two_parts() -> None:
         VehicleFile.parse('[file.log]\ntime = "t"\nfine = "u"\n[sensor.s.channel]\na = { column = "a" }')
     with pytest.raises(LogError, match="the key fine belongs to the units s"):
         VehicleFile.parse('[file.log]\ntime = "t"\nunit = "s+ns"\n[sensor.s.channel]\na = { column = "a" }')
+
+
+def packets(folder: Path) -> Path:
+    lines = [f"{114 + 2 * k},{WAVE[k]},{k % 5}.5" for k in range(ROWS)]
+    return put(folder, "Packet number,Gyroscope X (deg/s),Accelerometer X (g)", lines, "packets.csv")
+
+
+def test_a_table_without_a_clock_has_the_rate_that_is_given(tmp_path: Path) -> None:
+    path = packets(tmp_path)
+    log = read(path, rate_hz=50.0)
+    np.testing.assert_allclose(log.time, np.arange(ROWS) / 50)
+    assert log.epoch_s is None
+    assert any("its rows are taken as 50 a second, as given" in note for note in log.notes)
+    vehicle = VehicleFile.parse(guess(path, rate_hz=50.0).to_toml())
+    assert vehicle.files[0].rate_hz == 50.0
+    np.testing.assert_array_equal(read(path, vehicle).time, log.time)
+    assert read(path, vehicle, rate_hz=25.0).period_s == pytest.approx(0.04)
+
+
+def test_a_table_in_memory_may_have_a_rate(tmp_path: Path) -> None:
+    table = {"ax": [float(cell) for cell in WAVE], "ay": [k % 5 + 0.5 for k in range(ROWS)]}
+    assert read(table, rate_hz=20.0).period_s == pytest.approx(0.05)
+
+
+def test_parts_of_a_table_without_a_clock_follow_each_other(tmp_path: Path) -> None:
+    lines = [f"{114 + 2 * k},{np.sin(k / 3):.3f}" for k in range(3000)]
+    path = put(tmp_path, "Packet number,ax", lines)
+    parts: list[Log] = []
+    with small_parts(100):
+        read_parts(path, parts.append, rate_hz=100.0)
+    assert len(parts) > 2
+    np.testing.assert_allclose(np.concatenate([part.time for part in parts]), np.arange(3000) / 100, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("rate", "said"), [(0.0, "a positive number"), (-1.0, "a positive number"), (float("nan"), "positive")]
+)
+def test_a_rate_that_is_none(tmp_path: Path, rate: float, said: str) -> None:
+    with pytest.raises(LogError, match=said):
+        read(packets(tmp_path), rate_hz=rate)
+
+
+def test_a_rate_beside_a_clock_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="its clock is the column 'time'; leave out the rate"):
+        read(put(tmp_path, "time,ax", times(clock)), rate_hz=10.0)

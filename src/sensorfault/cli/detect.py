@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 @click.command("detect")
 @options.log_argument
 @options.vehicle_option
+@options.rate_option
 @options.model_option
 @options.detecting_method_option
 @options.learn_option
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 def command(
     log: Path,
     vehicle: Path | None,
+    rate_hz: float | None,
     model_path: Path | None,
     method: str | None,
     learn: float,
@@ -54,7 +56,7 @@ def command(
     outputs.check_outputs([*outs, report_path, json_path], [log, vehicle, model_path])
     choice = fitting.Choice(model_path, method, learn, seed)
     sketch = _sketch() if report_path else None
-    found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take if sketch else None)
+    found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take if sketch else None, rate_hz)
     show.events(found.events, f"Faults in {found.log.name}", answer=json_path != "-")
     for sentence in limits.of_coverage(found):
         show.say(sentence)

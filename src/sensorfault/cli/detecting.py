@@ -26,14 +26,19 @@ def detect(model: "Model", log: "Log", doing: str = "judging") -> "Detection":
 
 
 def detect_log(
-    path: Path, vehicle: Path | None, by_parts: bool | None, choice: fitting.Choice, see: "See | None" = None
+    path: Path,
+    vehicle: Path | None,
+    by_parts: bool | None,
+    choice: fitting.Choice,
+    see: "See | None" = None,
+    rate_hz: float | None = None,
 ) -> "Detection":
     """Read and judge a log, by the chosen model or by its own; print what reading found, and limits of its own model.
 
     `by_parts`: see `reading.in_parts`. `see` gets each part that was judged, as in `detect_file`.
     """
     parts = reading.in_parts(path, by_parts)
-    read = partial(reading.read_in, parts, path, vehicle, model=fitting.known_by(choice))
+    read = partial(reading.read_in, parts, path, vehicle, model=fitting.known_by(choice), rate_hz=rate_hz)
     comparison = fitting.comparison_of(choice)
     if comparison is not None:
         from sensorfault.runtime.compared import NothingToCompare
@@ -41,17 +46,12 @@ def detect_log(
         try:
             return _compared(read, comparison, see)
         except NothingToCompare as nothing:
-            return _inertial(nothing, path, vehicle, by_parts, choice, see)
+            return _inertial(nothing, partial(read, quiet=True), parts, choice, see)
     return _fitted(read, parts, choice, see)
 
 
 def _inertial(
-    nothing: "NothingToCompare",
-    path: Path,
-    vehicle: Path | None,
-    by_parts: bool | None,
-    choice: fitting.Choice,
-    see: "See | None",
+    nothing: "NothingToCompare", quiet: "Parts", parts: bool, choice: fitting.Choice, see: "See | None"
 ) -> "Detection":
     """A log without two sensors that measure the same: an inertial unit is still judged by itself.
 
@@ -64,8 +64,6 @@ def _inertial(
         raise nothing
     if nothing.alone is not None and not nothing.inertial:
         return nothing.alone
-    parts = reading.in_parts(path, by_parts)
-    quiet = partial(reading.read_in, parts, path, vehicle, quiet=True)
     try:
         found = _fitted(quiet, parts, replace(choice, method=fitting.INERTIAL), see)
     except LogError:

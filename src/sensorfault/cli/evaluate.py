@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 @click.command("evaluate")
 @options.log_argument
 @options.vehicle_option
+@options.rate_option
 @options.model_option
 @options.method_option
 @options.learn_option
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 def command(
     log: Path,
     vehicle: Path | None,
+    rate_hz: float | None,
     model_path: Path | None,
     method: str | None,
     learn: float,
@@ -56,7 +58,7 @@ def command(
     outputs.check_outputs([json_path], [log, vehicle, model_path, truth_path])
     truth = reading.read_truth(truth_path) if truth_path else None
     choice = fitting.Choice(model_path, method, learn, seed)
-    table = reading.read_log(log, vehicle, fitting.known_by(choice))
+    table = reading.read_log(log, vehicle, fitting.known_by(choice), rate_hz=rate_hz)
     model, rest = fitting.model_and_rest(choice, table)
     if truth is not None:
         begun = [fault for fault in truth if fault.start_s >= rest.time[0]]

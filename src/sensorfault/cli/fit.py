@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 @click.command("fit")
 @options.log_argument
 @options.vehicle_option
+@options.rate_option
 @options.fitting_method_option
 @options.out_option(None, "The model file to write.  [default: NAME.sensorfault here]")
 @click.option("--until", "until_s", type=float, help="Use the log only up to this time [s].")
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 def command(
     log: Path,
     vehicle: Path | None,
+    rate_hz: float | None,
     method: str,
     out: Path | None,
     until_s: float | None,
@@ -50,7 +52,7 @@ def command(
 
         recipe(method)
     outputs.check_outputs([out, json_path, checkpoint], [log, vehicle])
-    table = reading.read_log(log, vehicle)
+    table = reading.read_log(log, vehicle, rate_hz=rate_hz)
     if until_s is not None:
         table = table.between(end_s=until_s)
     if method == METHOD:

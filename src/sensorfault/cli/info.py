@@ -18,9 +18,12 @@ _COLUMNS = ("sensor", "channels", "rate [Hz]", "n", "gaps", "longest [s]", "at",
 @click.command("info")
 @options.log_argument
 @options.vehicle_option
+@options.rate_option
 @options.by_parts_option
 @options.json_option
-def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: str | None) -> None:
+def command(
+    log: Path, vehicle: Path | None, rate_hz: float | None, by_parts: bool | None, json_path: str | None
+) -> None:
     """List what a log holds: sensors, rates, gaps, held values; which methods apply to it, and why others do not.
 
     Nothing is fitted. A method that seems to apply may still turn out to need more data when it is fitted.
@@ -31,7 +34,7 @@ def command(log: Path, vehicle: Path | None, by_parts: bool | None, json_path: s
 
     outputs.check_outputs([json_path], [log, vehicle])
     summing = Summing()
-    said = reading.read_in(reading.in_parts(log, by_parts), log, vehicle, summing.take)
+    said = reading.read_in(reading.in_parts(log, by_parts), log, vehicle, summing.take, rate_hz=rate_hz)
     table, sensors = summing.first, summing.sensors
     assert table is not None  # a log without a row is an error
     applies, lacking, without = _methods(table.measurements())

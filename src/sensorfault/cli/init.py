@@ -14,10 +14,11 @@ if TYPE_CHECKING:
 
 @click.command("init")
 @options.log_argument
+@options.rate_option
 @options.out_option(None, "Where to write it.  [default: vehicle.toml beside the log]")
 @click.option("--force", is_flag=True, help="Replace an existing file.")
 @options.json_option
-def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> None:
+def command(log: Path, rate_hz: float | None, out: Path | None, force: bool, json_path: str | None) -> None:
     """Write a vehicle.toml for an unknown log, to be checked and corrected.
 
     Every line is a guess from names and values, with its reason and how sure it is. Then init says what 'detect' will
@@ -31,7 +32,7 @@ def command(log: Path, out: Path | None, force: bool, json_path: str | None) -> 
     target = out or home / VEHICLE
     outputs.check_outputs([target, json_path], [one for one in _logs(log) if one.name != VEHICLE])
     with show.patient(f"reading {log.name}") as tell:
-        found = guess(log, tell)
+        found = guess(log, tell, rate_hz)
     if target.exists() and not force:
         raise LogError(f"{target} is there already; give another --out, or --force to replace it.")
     with appearing(target) as temporary:

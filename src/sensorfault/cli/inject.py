@@ -11,6 +11,7 @@ from sensorfault.core.times import clock
 @click.command("inject")
 @options.log_argument
 @options.vehicle_option
+@options.rate_option
 @click.option(
     "--fault",
     "faults",
@@ -24,7 +25,13 @@ from sensorfault.core.times import clock
 @options.seed_option
 @options.json_option
 def command(
-    log: Path, vehicle: Path | None, faults: tuple[str, ...], out: Path | None, seed: int, json_path: str | None
+    log: Path,
+    vehicle: Path | None,
+    rate_hz: float | None,
+    faults: tuple[str, ...],
+    out: Path | None,
+    seed: int,
+    json_path: str | None,
 ) -> None:
     """Put faults into a log. Writes the log and, beside it, its vehicle.toml and the list of faults (.truth.json)."""
     from sensorfault.core.files import appearing
@@ -37,7 +44,7 @@ def command(
     truth_path = out.with_suffix(".truth.json")
     vehicle_path = out.with_suffix(".vehicle.toml")
     outputs.check_outputs([out, truth_path, vehicle_path, json_path], [log, vehicle])
-    table = reading.read_log(log, vehicle)
+    table = reading.read_log(log, vehicle, rate_hz=rate_hz)
     injected = inject(table, [parse_fault(text, table) for text in faults], seed)
     write(injected.log, out)
     with appearing(truth_path) as temporary:

@@ -11,6 +11,9 @@ vehicle_option = click.option(
     type=click.Path(path_type=Path),
     help="A vehicle.toml. By default the one beside the log, else a guess.",
 )
+rate_option = click.option(
+    "--rate", "rate_hz", type=float, metavar="HZ", help="Rows a second, for tables without a clock."
+)
 json_option = click.option(
     "--json", "json_path", type=click.Path(path_type=str), help="Write the answer as JSON; - for standard output."
 )

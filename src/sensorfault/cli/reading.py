@@ -28,8 +28,16 @@ def in_parts(path: Path, wanted: bool | None) -> bool:
     return is_long_log(path) if wanted is None else wanted
 
 
-def read_log(path: Path, vehicle: Path | None, model: "VehicleFile | None" = None, quiet: bool = False) -> "Log":
+def read_log(
+    path: Path,
+    vehicle: Path | None,
+    model: "VehicleFile | None" = None,
+    quiet: bool = False,
+    rate_hz: float | None = None,
+) -> "Log":
     """Read a log whole. `model`: what a model knows of its columns. `quiet`: what reading found was printed before.
+
+    `rate_hz`: rows a second of tables without a clock.
 
     Raises:
         LogError: as `read`, or the log is larger than this machine's memory.
@@ -38,7 +46,7 @@ def read_log(path: Path, vehicle: Path | None, model: "VehicleFile | None" = Non
 
     _check_memory(path)
     with show.patient(f"reading {path.name}") as tell:
-        log = read(path, vehicle, tell=tell, model=model)
+        log = read(path, vehicle, tell=tell, model=model, rate_hz=rate_hz)
     if not quiet:
         _print(f"{log.name}: {len(log)} rows, {log.duration_s:.1f} s, {len(log.sensors)} sensors.", log.notes)
     return log
@@ -52,6 +60,7 @@ def read_in(
     tell: Callable[[float], None] = lambda share: None,
     model: "VehicleFile | None" = None,
     quiet: bool = False,
+    rate_hz: float | None = None,
 ) -> "ReadingNotes":
     """Read a log in parts, or else whole as one part. `take` gets each part, `tell` before it the share read so far.
 
@@ -62,7 +71,7 @@ def read_in(
     from sensorfault.logs.reading_notes import ReadingNotes
 
     if not parts:
-        log = read_log(path, vehicle, model, quiet)
+        log = read_log(path, vehicle, model, quiet, rate_hz)
         tell(1.0)
         take(log)
         return ReadingNotes(log.notes, log.damage)
@@ -80,7 +89,7 @@ def read_in(
             bar(share)
             tell(share)
 
-        said = read_parts(path, count, vehicle, both, model)
+        said = read_parts(path, count, vehicle, both, model, rate_hz)
     if not quiet:
         _print(f"{name}: {rows} rows to {clock(end_s)}, read part by part.", said.notes)
     return said

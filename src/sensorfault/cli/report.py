@@ -10,6 +10,7 @@ from sensorfault.cli import answer, detecting, fitting, limits, options, outputs
 @click.command("report")
 @options.log_argument
 @options.vehicle_option
+@options.rate_option
 @options.model_option
 @options.detecting_method_option
 @options.learn_option
@@ -26,6 +27,7 @@ from sensorfault.cli import answer, detecting, fitting, limits, options, outputs
 def command(
     log: Path,
     vehicle: Path | None,
+    rate_hz: float | None,
     model_path: Path | None,
     method: str | None,
     learn: float,
@@ -49,7 +51,7 @@ def command(
     truth = reading.read_truth(truth_path) if truth_path else ()
     sketch = Sketch()
     choice = fitting.Choice(model_path, method, learn, seed)
-    found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take)
+    found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take, rate_hz)
     write_page(found, out, truth, summary=limits.of_detection(found), sketch=sketch)
     show.say(f"{len(found.events)} fault events. Wrote {out}.")
     show.write_json(json_path, answer.of_detection(found))

@@ -11,7 +11,7 @@ from sensorfault.logs.readers.beginning import is_long, read_beginning
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Tables
 from sensorfault.logs.table import SAID, LogError
-from sensorfault.logs.vehicle import VehicleFile
+from sensorfault.logs.vehicle import VehicleFile, with_rate
 
 GUESSED = "No vehicle.toml: sensors, units and held values are guesses; `sensorfault init` writes them down to check."
 
@@ -34,9 +34,29 @@ class Description:
 
 
 def describe(
-    path: Where, vehicle: str | Path | VehicleFile | None, model: VehicleFile | None, tell: Tell
+    path: Where,
+    vehicle: str | Path | VehicleFile | None,
+    model: VehicleFile | None,
+    tell: Tell,
+    rate_hz: float | None = None,
 ) -> Description:
-    """The description of a log's columns.
+    """The description of a log's columns. `rate_hz`: rows a second of its files without a clock.
+
+    Raises:
+        LogError: as `_describe`, or a rate is given and no file needs one.
+    """
+    found = _describe(path, vehicle, model, tell, rate_hz)
+    return found if rate_hz is None else replace(found, vehicle=with_rate(found.vehicle, rate_hz))
+
+
+def _describe(
+    path: Where,
+    vehicle: str | Path | VehicleFile | None,
+    model: VehicleFile | None,
+    tell: Tell,
+    rate_hz: float | None,
+) -> Description:
+    """The same as it is found.
 
     A given vehicle file, or one beside the log that names it, is taken. One beside it that was written for another log
     is taken if the log has its columns. What a model knows is not guessed again.
@@ -48,7 +68,7 @@ def describe(
     if found is not None and found.sure and model is None:
         return Description(called_after(found.vehicle, path))
     if found is None and model is None:
-        return _guessed(path, tell)
+        return _guessed(path, tell, rate_hz)
     looked = _Look(path, tell)
     notes: list[str] = []
     if found is not None and not found.sure and (lacks := looked.lacks(found.vehicle)):
@@ -63,12 +83,12 @@ def describe(
                 return replace(known, notes=(*notes, *known.notes))
     if found is not None:
         return Description(called_after(found.vehicle, path), tuple(notes), tables=looked.tables)
-    guessed = _guessed(path, tell)
+    guessed = _guessed(path, tell, rate_hz)
     return replace(guessed, notes=(*notes, *guessed.notes))
 
 
-def _guessed(path: Where, tell: Tell) -> Description:
-    vehicle = guess(path, tell)
+def _guessed(path: Where, tell: Tell, rate_hz: float | None) -> Description:
+    vehicle = guess(path, tell, rate_hz)
     return Description(vehicle, (GUESSED, *vehicle.notes), guessed=True)
 
 
@@ -132,7 +152,7 @@ class _Look:
                 continue
             mine = [sensor for sensor in vehicle.sensors if sensor.file == entry.name]
             named = [channel.column for sensor in mine for channel in sensor.channels]
-            named += [name for name in (entry.time, *(sensor.epoch for sensor in mine)) if name is not None]
+            named += [name for name in (entry.time, entry.fine, *(sensor.epoch for sensor in mine)) if name is not None]
             absent = [name for name in dict.fromkeys(named) if name not in source.frame.columns]
             lacking += [f"{source.path.name} has no column '{name}'" for name in absent]
             there |= any(channel.column in source.frame.columns for sensor in mine for channel in sensor.channels)

@@ -37,14 +37,15 @@ def read_parts(
     vehicle: str | Path | VehicleFile | None = None,
     tell: Callable[[float], None] = lambda share: None,
     model: VehicleFile | None = None,
+    rate_hz: float | None = None,
 ) -> ReadingNotes:
     """Read one file part by part: `take` is called with consecutive pieces of what `read` would return.
 
     Each part is read with the one before it, so that held values and rates are those of the whole log. Two things
     differ: periods and the clock of a recording are measured on a part. Rows older than rows already passed on (a clock
     that goes back, a sensor that is written late) are left out, and a note says so; so is the first row of a sensor
-    slower than the parts. `vehicle` and `model` are as for `read`; without both the columns are guessed from the
-    beginning of the file.
+    slower than the parts. `vehicle`, `model` and `rate_hz` are as for `read`; without the first two the columns are
+    guessed from the beginning of the file.
 
     Raises:
         LogError: a format that cannot be read in parts, or a part that cannot be used.
@@ -55,7 +56,7 @@ def read_parts(
         what = f"{len(files)} files" if len(files) > 1 else f"{known_format(files[0]).title}, which is read whole"
         able = ", ".join(sorted((one.title for one in registered() if one.parts), key=str.casefold))
         raise LogError(f"{path}: this is {what}; give one file of a format that can be read part by part: {able}.")
-    described = describe(path, vehicle, model, tell)
+    described = describe(path, vehicle, model, tell, rate_hz)
     known = described.vehicle
     used = {sensor.file for sensor in known.sensors}
     entries = [entry for entry, _ in pair_files(known, path) if entry.name in used]

@@ -23,6 +23,7 @@ def read(
     resample: Resample = "hold",
     tell: Callable[[float], None] = lambda share: None,
     model: VehicleFile | None = None,
+    rate_hz: float | None = None,
 ) -> Log:
     """Read a log: files of a drive, or a table that is in memory already.
 
@@ -39,6 +40,7 @@ def read(
             into the future and smooths faults over; for plots, and for papers that ask for it.
         tell: is called with the share of a large file that has been read, 0 to 1.
         model: what a fitted model knows of the columns, its `description`; a vehicle file must agree with it.
+        rate_hz: rows a second of tables that have no clock.
 
     Returns:
         The log on one clock: T rows, C channels, values in SI, NaN where nothing arrived.
@@ -54,8 +56,8 @@ def read(
     from sensorfault.logs.reading import read_files, read_table
 
     if is_table(path):
-        return read_table(source_of(path), vehicle or model, resample)
-    return read_files(_where(path), vehicle, resample, tell, model)
+        return read_table(source_of(path), vehicle or model, resample, rate_hz)
+    return read_files(_where(path), vehicle, resample, tell, model, rate_hz)
 
 
 def _where(path: object) -> Where:

@@ -19,7 +19,7 @@ from sensorfault.logs.readers.source import Ask, Source, Tables
 from sensorfault.logs.resample import Resample
 from sensorfault.logs.stream import Stream, channel_of, read_stream
 from sensorfault.logs.table import Log, LogError, Sensor
-from sensorfault.logs.vehicle import VehicleFile
+from sensorfault.logs.vehicle import VehicleFile, with_rate
 
 GUESSED_TABLE = "No vehicle file: sensors, units and held values are guesses; give vehicle= to say what they are."
 
@@ -31,9 +31,10 @@ def read_files(
     resample: Resample,
     tell: Callable[[float], None],
     model: VehicleFile | None = None,
+    rate_hz: float | None = None,
 ) -> Log:
     """What `read` says."""
-    described = describe(path, vehicle, model, tell)
+    described = describe(path, vehicle, model, tell, rate_hz)
     known = described.vehicle
     used = {sensor.file for sensor in known.sensors} - described.silent
     pairs = [(entry, file) for entry, file in pair_files(known, path) if entry.name in used]
@@ -68,10 +69,13 @@ def _streams(
     return streams, known if sensors == known.sensors else replace(known, sensors=sensors), notes
 
 
-def read_table(source: Source, vehicle: str | Path | VehicleFile | None, resample: Resample) -> Log:
+def read_table(
+    source: Source, vehicle: str | Path | VehicleFile | None, resample: Resample, rate_hz: float | None = None
+) -> Log:
     """A log of one table that is in memory."""
     described = vehicle if isinstance(vehicle, VehicleFile) or vehicle is None else VehicleFile.read(vehicle)
-    known = described or guess_source(source)
+    known = described or guess_source(source, rate_hz)
+    known = known if rate_hz is None else with_rate(known, rate_hz)
     if len(known.files) > 1:
         raise LogError(f"{known.name}: it describes {len(known.files)} files, but a table is one; describe one file.")
     entry = known.files[0]

@@ -35,7 +35,7 @@ fix_type = { column = "fix_type", kind = "quality" }      # estimate, quality or
 """
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
@@ -111,6 +111,34 @@ class VehicleFile:
         for sensor in self.sensors:
             lines += ["", *sensor_lines(sensor, single=len(self.files) == 1)]
         return "\n".join(lines) + "\n"
+
+
+def sound_rate(rate_hz: float) -> float:
+    """The rate, if it is one.
+
+    Raises:
+        LogError: it is not positive, or not finite.
+    """
+    if not 0 < rate_hz < float("inf"):
+        raise LogError(f"a rate of {rate_hz:g} Hz was given; give how many rows come in a second, a positive number.")
+    return rate_hz
+
+
+def with_rate(vehicle: VehicleFile, rate_hz: float) -> VehicleFile:
+    """The description with this rate for the files that have no clock.
+
+    Raises:
+        LogError: the rate is not positive, or each file has a clock.
+    """
+    sound_rate(rate_hz)
+    if all(file.rate_hz is None for file in vehicle.files):
+        clock = next((file.time for file in vehicle.files if file.time is not None), None)
+        raise LogError(
+            f"{vehicle.name}: a rate is for tables without a clock, but its clock is "
+            f"{f'the column {clock!r}' if clock else 'that of its format'}; leave out the rate."
+        )
+    files = tuple(file if file.rate_hz is None else replace(file, rate_hz=rate_hz) for file in vehicle.files)
+    return replace(vehicle, files=files)
 
 
 def _vehicle(top: TomlTable, where: str) -> VehicleFile:

@@ -59,7 +59,7 @@ class Look:
     notes: list[str]
 
 
-def look_at(file: Path, tell: Callable[[float], None]) -> Look:
+def look_at(file: Path, tell: Callable[[float], None], rate_hz: float | None = None) -> Look:
     """What one file's tables are; of an autopilot's, those that are sensors."""
     try:
         tables = read_beginning(file, tell) if is_long(file) else read_tables(file, Ask(tell=tell))
@@ -79,7 +79,7 @@ def look_at(file: Path, tell: Callable[[float], None]) -> Look:
     commands = [name for name in tables if _COMMAND.search(name)]
     if commands:
         said.append(f"{file.name}: left out, as they are commands: {', '.join(commands)}.")
-    guesses, errors = _guess_tables((name, one) for name, one in tables.items() if name not in commands)
+    guesses, errors = _guess_tables(((name, one) for name, one in tables.items() if name not in commands), rate_hz)
     return Look(guesses, errors, list(dict.fromkeys(said)))
 
 
@@ -114,22 +114,24 @@ def _guess_stock(stock: Stock, tables: Tables) -> tuple[list[Guess], list[LogErr
     return guesses, errors, remarks
 
 
-def _guess_tables(tables: Iterable[tuple[str, Source]]) -> tuple[list[Guess], list[LogError]]:
+def _guess_tables(
+    tables: Iterable[tuple[str, Source]], rate_hz: float | None = None
+) -> tuple[list[Guess], list[LogError]]:
     """What the tables of one file are, and why some are nothing."""
     guesses, errors = [], []
     for name, source in tables:
         try:
-            guesses.append(guess_table(source, name or None))
+            guesses.append(guess_table(source, name or None, rate_hz))
         except LogError as error:
             errors.append(LogError(f"{error} (table {name})") if name else error)
     return guesses, errors
 
 
-def guess_table(source: Source, table: str | None) -> Guess:
-    """The clock and the sensors in one table."""
+def guess_table(source: Source, table: str | None, rate_hz: float | None = None) -> Guess:
+    """The clock and the sensors in one table. `rate_hz`: its rows a second, if it has no clock."""
     path = source.path
     head = replace(source, frame=source.frame.head(_ROWS))
-    timed = guess_time(head)
+    timed = guess_time(head, rate_hz)
     clock = read_clock(head, timed)
     if timed.fine is not None:
         head = replace(head, frame=head.frame.drop(timed.fine))

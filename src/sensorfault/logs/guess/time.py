@@ -12,6 +12,7 @@ from sensorfault.logs.guess.time_names import is_plain
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.time_units import PER_SECOND
+from sensorfault.logs.vehicle import sound_rate
 
 
 def guess_time(source: Source, rate_hz: float | None = None) -> FileEntry:
@@ -35,7 +36,7 @@ def guess_time(source: Source, rate_hz: float | None = None) -> FileEntry:
     unread = _unread(source, found) if headed else None
     if not able or (unread is not None and not any(one.named for one in able)):
         if rate_hz is not None:
-            return FileEntry(rate_hz=rate_hz, why="rows a second, as given")
+            return FileEntry(rate_hz=sound_rate(rate_hz), why="rows a second, as given")
         raise unread or LogError(
             f"{source.path}: there is no time column: no column is a clock by its name, its unit or its form; name one "
             "in vehicle.toml."

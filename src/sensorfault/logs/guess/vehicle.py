@@ -13,18 +13,18 @@ from sensorfault.logs.guess.naming import joined, short_names, stem_of
 from sensorfault.logs.place import Where, files_of
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
-from sensorfault.logs.vehicle import VehicleFile
+from sensorfault.logs.vehicle import VehicleFile, with_rate
 
 _RAW = "_uncalibrated"
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of numbers as damage makes them
-def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
+def guess_files(path: Where, tell: Callable[[float], None], rate_hz: float | None = None) -> VehicleFile:
     """Does the work of `guess`."""
     files = files_of(path)
     topics = topics_of(files)
     others = [file.name for file in files if file not in topics.values()]
-    looked = [look_at_topics(topics, others, tell)] if topics else [look_at(file, tell) for file in files]
+    looked = [look_at_topics(topics, others, tell)] if topics else [look_at(file, tell, rate_hz) for file in files]
     guesses = [one for look in looked for one in look.guesses]
     errors = [error for look in looked for error in look.errors]
     if not guesses:
@@ -50,17 +50,18 @@ def guess_files(path: Where, tell: Callable[[float], None]) -> VehicleFile:
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
     name = stem_of(files[0]) if len(files) == 1 else files[0].absolute().parent.stem
     said = (*notes, *raw, *_untied(guesses), *_missed(guesses))
-    return VehicleFile(name, tuple(entries), tuple(sensors), notes=said, where="a guess", guessed=True)
+    found = VehicleFile(name, tuple(entries), tuple(sensors), notes=said, where="a guess", guessed=True)
+    return found if rate_hz is None else with_rate(found, rate_hz)
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def guess_source(source: Source) -> VehicleFile:
+def guess_source(source: Source, rate_hz: float | None = None) -> VehicleFile:
     """Describe one table from its names and values.
 
     Raises:
         LogError: no column rises like a time, or none measures anything.
     """
-    one = guess_table(source, None)
+    one = guess_table(source, None, rate_hz)
     file = replace(one.file, name="log")
     said = tuple(_missed([one]))
     return VehicleFile(source.path.stem, (file,), tuple(one.sensors), notes=said, where="a guess", guessed=True)
