@@ -116,3 +116,14 @@ def test_a_pause_is_said_once(run: Run) -> None:
     result = json.loads(run("info", "paused.csv", "--json", "-").out)
     assert result["pauses"] == [[pytest.approx(49.98), pytest.approx(54.0)]]
     assert [sensor["gaps"] for sensor in result["sensors"]] == [0, 0, 0]
+
+
+def test_a_log_too_short_to_judge_is_not_without_faults(run: Run, drive: Path, car: Path) -> None:
+    Path("two.csv").write_text("".join(drive.read_text().splitlines(keepends=True)[:3]))
+    said = run("detect", "two.csv", "--model", car, "--json", "two.json")
+    assert said.code == 0
+    assert "Faults in two: unknown, as none of its 2 rows could be judged; it is too short to judge" in said.err
+    assert "none." not in said.err
+    assert json.loads(Path("two.json").read_text())["judged"] is False
+    assert run("detect", drive, "--model", car, "--json", "all.json").code == 0
+    assert json.loads(Path("all.json").read_text())["judged"] is True

@@ -29,6 +29,7 @@ def _common(found: "Detection") -> dict[str, Any]:
         "log": found.log.name,
         "method": found.method,
         "judged_s": [float(found.log.time[0]), float(found.log.time[-1])],
+        "judged": found.judged,
         "fitted_on_s": found.fitted_on_s,
         "notes": list(found.notes),
         "events": [event.as_dict() for event in found.events],

@@ -57,7 +57,10 @@ def command(
     choice = fitting.Choice(model_path, method, learn, seed)
     sketch = _sketch() if report_path else None
     found = detecting.detect_log(log, vehicle, by_parts, choice, sketch.take if sketch else None, rate_hz)
-    show.events(found.events, f"Faults in {found.log.name}", answer=json_path != "-")
+    if found.events or found.judged:
+        show.events(found.events, f"Faults in {found.log.name}", answer=json_path != "-")
+    else:
+        show.say(limits.of_unjudged(found))
     for sentence in limits.of_coverage(found):
         show.say(sentence)
     for out in outs:

@@ -25,6 +25,14 @@ def of_detection(detection: "Detection") -> tuple[str, ...]:
     return of_model(detection.model)
 
 
+def of_unjudged(detection: "Detection") -> str:
+    """What is said in the place of "none" where no row could be judged."""
+    return (
+        f"Faults in {detection.log.name}: unknown, as none of its {detection.rows} rows could be judged; it is too "
+        "short to judge, or its sensors have no values."
+    )
+
+
 def of_coverage(detection: "Detection") -> tuple[str, ...]:
     """What the default compared, and what it did not and why; nothing for other methods."""
     coverage = detection.coverage

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int8
 
 from sensorfault.core.plotting import draw
+from sensorfault.core.verdicts import UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.faults.fault import Fault
 from sensorfault.logs.table import Log, LogError
@@ -103,6 +104,11 @@ class Detection:
     def whole(self) -> bool:
         """Whether the verdicts on all rows were kept."""
         return "sample" in self.__dict__
+
+    @property
+    def judged(self) -> bool:
+        """Whether any row was judged; a log may be too short for that. Always true of a log that came in parts."""
+        return not self.whole or bool((self.sample != UNKNOWN).any())
 
     @property
     def rows(self) -> int:
