@@ -148,6 +148,17 @@ def test_a_column_that_names_the_kind_of_each_row(tmp_path: Path) -> None:
     assert read(path).duration_s == pytest.approx(5.9)
 
 
+def test_one_value_a_line_is_called_what_the_line_names(tmp_path: Path) -> None:
+    lines = "".join(f"{k / 10},ax,{k % 5}.5\n{k / 10},speed,{k % 3}.25\n" for k in range(30))
+    tables = read_tables(put(tmp_path, "time,name,value\n" + lines))
+    assert {name: one.frame.columns for name, one in tables.items()} == {
+        "ax": ["time", "ax"],
+        "speed": ["time", "speed"],
+    }
+    np.testing.assert_array_equal(tables["ax"].frame["ax"].to_numpy(), [k % 5 + 0.5 for k in range(30)])
+    assert {c.column for s in guess(tmp_path / "log.csv").sensors for c in s.channels} == {"ax", "speed"}
+
+
 def test_a_mode_is_no_kind(tmp_path: Path) -> None:
     lines = [f"{k / 10},{'MANUAL' if k < 30 else 'AUTO'},{k % 5}.5" for k in range(60)]
     assert set(read_tables(put(tmp_path, "time,name,ax\n" + "\n".join(lines) + "\n"))) == {""}

@@ -23,6 +23,8 @@ _NAMES = re.compile(
 )
 _MOST, _FEWEST = 32, 3  # kinds; rows of one
 _OFTEN = 0.1  # share of the rows at which the kind changes: a mode or a gear changes seldom
+_VALUE = re.compile(r"val(ue)?|reading|data|measurement", re.IGNORECASE)
+_LONG = 2  # columns beside the kind
 _WHERE = 3  # first columns that may name the kind where there is no header
 _LEFT_OUT = 0.2  # share of the records that may be unlike the others of their kind
 
@@ -51,6 +53,8 @@ def of_kinds(source: Source, kind: str | None) -> Tables:
         rows = np.flatnonzero((source.frame[kind] == value).to_numpy())
         frame = source.frame[rows].drop(kind)
         frame = frame.drop([name for name in frame.columns if frame[name].null_count() == len(frame)])
+        if frame.width == _LONG:  # a time and a value: the kind says what of
+            frame = frame.rename({name: str(value) for name in frame.columns if _VALUE.fullmatch(name)})
         tables[str(value)] = replace(source, frame=frame, lines=_picked(source, rows), table=str(value))
     return tables
 
