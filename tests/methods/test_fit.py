@@ -201,6 +201,14 @@ def test_sensors_that_are_all_silent_at_times_are_watched_all_the_same() -> None
     assert made.summary["rows"] == 1300
 
 
+def test_a_channel_that_moves_in_one_stretch_only_is_not_watched() -> None:
+    value = log().value.copy()
+    value[300:, 3] = 7.0
+    made = fit(fitted.shifted(log(), value), "relative-conditioning", held_out=0.0)
+    assert made.watched == (True, True, True, False, True, True, False, False)
+    assert made.summary["not_watched"]["accelerometer.x"] == "changes in one stretch of the training data only"
+
+
 def test_a_constant_channel_is_watched_for_silence() -> None:
     """It carries no weight and no verdict, yet its sensor's silence is an event."""
     value = log().value.copy()

@@ -10,8 +10,7 @@ from jaxtyping import Bool, Float
 from sensorfault.calibration.scaling import Scaling
 from sensorfault.numerics.networks.activations import ACTIVATIONS
 from sensorfault.stages.residual.reconstruction import Reconstruction
-
-BLOCKS = 5
+from sensorfault.training.blocks import blocks_of
 
 Fit = Callable[[Float[np.ndarray, "N C"], Scaling], Reconstruction]
 
@@ -35,7 +34,7 @@ def largest_unseen_norm(
     not show that.
     """
     norms = []
-    for block in np.array_split(np.arange(len(value)), BLOCKS):
+    for block in blocks_of(len(value)):
         rest = np.delete(value, block, axis=0)
         found = fit(rest, Scaling.of(rest, watched))
         norms.append(float(np.linalg.norm(residual_of(found, value[block]) / scale, axis=1).max()))

@@ -12,8 +12,8 @@ from sensorfault.methods.common.rows import Training
 from sensorfault.methods.inertial.needs import in_a_row
 from sensorfault.runtime.model import Model
 from sensorfault.stages.statistic.mahalanobis import Mahalanobis
+from sensorfault.training.blocks import blocks_of
 from sensorfault.training.conditioning import fit_conditioning
-from sensorfault.training.cross_validation import BLOCKS
 
 READMIT_S = 0.5  # a channel is trusted again this long after its last alarm [s]
 
@@ -41,7 +41,7 @@ def conditioned(name: str, log: Log, levels: bool = True, cross_validated: bool 
 def unseen_scores(uncalibrated: Monitor, training: Training, levels: bool) -> Float[np.ndarray, "T K"]:
     """Score of the multivariate test for each block of the log, with weights fitted on the other blocks."""
     log, unseen = training.log, []
-    for block in np.array_split(np.arange(len(log)), BLOCKS):
+    for block in blocks_of(len(log)):
         known = training.rows.copy()
         known[block] = False
         other = fit_conditioning(log.time, log.value, known, training.watched, levels=levels)
