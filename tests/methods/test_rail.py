@@ -10,7 +10,7 @@ from sensorfault.faults.inject import inject
 from sensorfault.logs.epochs import RANGE
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.fit import fit
-from sensorfault.methods.gnss import gnss_ins
+from sensorfault.methods.gnss import needs
 from sensorfault.methods.gnss.rail import RECIPE
 from sensorfault.runtime.detect import detect
 from sensorfault.simulation.train import ride
@@ -31,7 +31,7 @@ def small(log: Log) -> Log:
 
 @pytest.fixture(autouse=True)
 def _ten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(gnss_ins.SYSTEMS, "G", 10)
+    monkeypatch.setitem(needs.SYSTEMS, "G", 10)
 
 
 def test_a_satellite_that_lies_is_named_and_nobody_else() -> None:
