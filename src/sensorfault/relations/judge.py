@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from sensorfault.logs.table import Log
-from sensorfault.relations import axes, facts, levels, limits
+from sensorfault.relations import axes, facts, levels, limits, past
 from sensorfault.relations.grid import STEP_S, Grid, pieces_of
 from sensorfault.relations.isolation import Isolation, Named
 from sensorfault.relations.levels.finding import Finding, runs
@@ -99,7 +99,7 @@ def judge(log: Log, learned: limits.Learned | None = None) -> Judged:
     rates = limits.rates_of(pieces, result.learned)
     end_s = _impact(signals)
     for piece in pieces:
-        score, limit = _scores(piece, result.learned, rates)
+        score, limit = _scores(piece, result.learned, rates, vehicle)
         found = [one for one in levels.findings(piece.grid, vehicle) if one.start_s < end_s]
         _leave_out(piece, score, found)
         if np.isfinite(end_s):
@@ -119,14 +119,15 @@ def _impact(signals: dict[str, Signal]) -> float:
 
 
 def _scores(
-    piece: Piece, learned: limits.Learned, rates: dict[str, float]
-) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, " K"]]:
-    """Changes without their usual value, in units of their limits."""
-    limit = np.array([learned.limit.get(test.key, np.inf) for test in piece.tests])
+    piece: Piece, learned: limits.Learned, rates: dict[str, float], vehicle: str
+) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, "T K"]]:
+    """Changes without their usual value, in units of their limits; and those limits."""
+    fixed = np.array([learned.limit.get(test.key, np.inf) for test in piece.tests])
     usual = np.array([rates.get(test.relation.name, 0.0) * limits.span_s(test) for test in piece.tests])
-    score = (piece.moved - usual) / limit
-    score[:, ~np.isfinite(limit)] = np.nan
-    return score, limit
+    moved = piece.moved - usual
+    limit = np.minimum(fixed, past.limits(piece, moved, limits.least_of(piece, vehicle)))
+    limit[:, ~np.isfinite(fixed)] = np.inf
+    return np.where(np.isfinite(limit), moved / limit, np.nan), limit
 
 
 def _leave_out(piece: Piece, score: Float[np.ndarray, "T K"], found: list[Finding]) -> None:
@@ -138,11 +139,10 @@ def _leave_out(piece: Piece, score: Float[np.ndarray, "T K"], found: list[Findin
             score[np.ix_(time > one.start_s, np.array(mine, bool))] = np.nan
 
 
-def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, " K"]) -> list[Episode]:
+def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, "T K"]) -> list[Episode]:
     if not piece.tests:
         return []
     by_attitude = np.array([("attitude", "") in dict(test.relation.blame) for test in piece.tests])
-    isolation = Isolation(piece.tests, limit)
     turned = np.array([bool(TURNED & set(test.relation.kind.split("|"))) for test in piece.tests])
     alone = _over(np.where(by_attitude | turned, np.nan, score))
     lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~alone
@@ -155,7 +155,8 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
             ticks = first + np.flatnonzero(alarm[first : last + 1])
             if len(ticks) < LEAST_TICKS:
                 continue
-            named = Named(device, ()) if device else isolation.name(votes[_some(ticks)])
+            few = _some(ticks)
+            named = Named(device, ()) if device else Isolation(piece.tests, limit[few].min(axis=0)).name(votes[few])
             if named.device is None and not device:
                 named = _by_the_attitude(piece, score[ticks], named)
             episodes.append(_episode(piece, score if device else votes, limit, ticks, named))
@@ -204,10 +205,10 @@ def _attitude_alone(piece: Piece, score: Float[np.ndarray, "T K"]) -> np.ndarray
 
 
 def _episode(
-    piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, " K"], ticks: np.ndarray, named: Named
+    piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, "T K"], ticks: np.ndarray, named: Named
 ) -> Episode:
     time = piece.grid.time
     peak = np.nan_to_num(np.abs(score[ticks]))
     i, k = np.unravel_index(int(np.argmax(peak)), peak.shape)
     start_s, end_s, test = float(time[ticks[0]]), float(time[ticks[-1]]), piece.tests[int(k)]
-    return Episode(start_s, end_s, named.device, named.candidates, test.key, float(peak[i, k]), float(limit[k]))
+    return Episode(start_s, end_s, named.device, named.candidates, test.key, float(peak[i, k]), float(limit[ticks[i], k]))

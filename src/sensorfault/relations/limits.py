@@ -143,6 +143,12 @@ def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dic
     return learned
 
 
+def least_of(piece: Piece, vehicle: str) -> Float[np.ndarray, " K"]:
+    """Below this no limit of a test lies, however quiet its past: a share of the floor of the class."""
+    known = [bounds(vehicle, test.kind) for test in piece.tests]
+    return np.array([SHARE * TENTH * one.floor if one else np.inf for one in known])
+
+
 def span_s(test: Test) -> float:
     """From the middle of a window's first ticks to the middle of its last [s]; 0 for a change of slope."""
     return max(test.window_s - min(test.window_s / 4, ENDS_S), STEP_S) if test.relation.order == 1 else 0.0

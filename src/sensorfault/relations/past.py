@@ -1,0 +1,84 @@
+"""What a log's own past says of a test: the largest change so far, while the vehicle moved no less than now.
+
+A class of vehicles holds good and bad receivers; its limits are wide for the good ones. After some minutes the log
+itself shows what is usual for these sensors.
+"""
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from sensorfault.relations.grid import STEP_S, Grid
+from sensorfault.relations.signals import Signal
+from sensorfault.relations.tests_of import Piece
+
+BLOCK_S = 20.0  # largest changes are kept of blocks of this length
+LEAST_BLOCKS = 4  # before there are so many, the past says nothing
+# Healthy logs of all kinds exceed the largest change of their past at most 3.4 times, if they move no more than in it.
+MOST = 4.0
+STATES = ("gyro", "accelerometer")  # what shows how the vehicle moves
+GRAVITY = 9.80665  # [m/s^2]
+SELF_DRIFTING = "accelerometer|accelerometer"  # two zeros part by warmth and tilt, which nothing here measures
+
+
+def limits(piece: Piece, moved: Float[np.ndarray, "T K"], least: Float[np.ndarray, " K"]) -> Float[np.ndarray, "T K"]:
+    """The limit of each test at each tick by the past; infinite where that says nothing.
+
+    `moved`: changes without their usual value, in their own units. `least`: no limit lies below. A tick knows only
+    blocks that ended before its window began. More violent motion than in the past widens the limit by the square of
+    how much more; the motion is never measured by a sensor that the test compares.
+    """
+    limit = np.full(moved.shape, np.inf)
+    motion = {role: found for role in STATES if (found := _motion(piece.grid, role)) is not None}
+    size = round(BLOCK_S / STEP_S)
+    block = np.arange(len(moved)) // size
+    for k, test in enumerate(piece.tests):
+        suspects = {device.rstrip("234") for (device, _), _ in test.relation.blame}
+        shown = [x for role, x in motion.items() if role not in suspects]
+        if not shown or test.relation.kind == SELF_DRIFTING:
+            continue
+        hold = 1 + int(np.ceil(test.window_s / BLOCK_S))
+        past, count = _largest_before(np.abs(moved[:, k]), block, hold)
+        more = np.ones(len(moved))
+        for x in shown:
+            known, _ = _largest_before(np.where(np.isfinite(moved[:, k]), x, np.nan), block, hold)
+            more = np.fmax(more, _running_max(x, hold * size) / np.maximum(known, 1e-9))
+        enough = count >= LEAST_BLOCKS
+        scale = MOST * (1 + 1 / np.maximum(count, 1)) * past * more**2
+        limit[enough, k] = np.maximum(scale, least[k])[enough]
+    return limit
+
+
+def _largest_before(
+    x: Float[np.ndarray, " T"], block: Int[np.ndarray, " T"], hold: int
+) -> tuple[Float[np.ndarray, " T"], Int[np.ndarray, " T"]]:
+    """The largest of all blocks that lie `hold` or more before each tick's, and how many they are."""
+    starts = np.flatnonzero(np.diff(block, prepend=-1))
+    there = np.add.reduceat(np.isfinite(x), starts) > 3
+    largest = np.where(there, np.fmax.reduceat(x, starts), 0.0)
+    before = np.maximum(block - hold + 1, 0)
+    most = np.r_[0.0, np.maximum.accumulate(largest)]
+    return most[before], np.r_[0, np.cumsum(there)][before]
+
+
+def _running_max(x: Float[np.ndarray, " T"], width: int) -> Float[np.ndarray, " T"]:
+    """The largest of the last `width` ticks."""
+    padded = np.r_[np.full(width - 1, -np.inf), x]
+    most = padded
+    span = 1
+    while 2 * span <= width:
+        most = np.maximum(most[:-span], most[span:])
+        span *= 2
+    return np.asarray(np.maximum(most[: len(x)], most[width - span : width - span + len(x)]))
+
+
+def _motion(grid: Grid, role: str) -> Float[np.ndarray, " T"] | None:
+    """How much the vehicle moves by the first sensor of a role: its rms over the last second, without gravity."""
+    if role not in grid:
+        return None
+    signal: Signal = grid.signals[role]
+    length = np.linalg.norm(signal.value, axis=1)
+    square = np.r_[0.0, np.cumsum(np.nan_to_num(length - GRAVITY if role == "accelerometer" else length) ** 2)]
+    last = np.searchsorted(signal.time, grid.time, side="right")
+    first = np.searchsorted(signal.time, grid.time - 1.0, side="right")
+    count = last - first
+    return np.where(count > 0, np.sqrt(np.maximum(square[last] - square[first], 0) / np.maximum(count, 1)), 0.0)
