@@ -30,6 +30,7 @@ from sensorfault.simulation.road import drive
 ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "src" / "sensorfault" / "relations" / "classes.toml"
 DATA = Path(os.environ.get("SENSORFAULT_DATA", ROOT.parent / "shared" / "data"))
+FEW = (3.0, 2.0, 2.0, 1.5, 1.0)  # by how much a ceiling is wider that 0, 1, 2, 3, 4 or more real logs show
 SEEDS = range(1000, 1006)
 Windows = list[tuple[float, float]]
 
@@ -105,8 +106,8 @@ def main() -> None:
                     real[vehicle, kind, window_s].append(value)
     lines = ["# Scales of the tests by class of vehicle. Made by benchmarks/class_table.py; do not edit.", ""]
     for (vehicle, kind, window_s), values in sorted(table.items()):
-        few = 3.5 if len(values) < 3 else 2.0 if len(values) < 4 else 1.0
         mine = real[vehicle, kind, window_s]
+        few = FEW[min(len(mine), len(FEW) - 1)]
         mine = mine if len(mine) >= 3 else values  # simulated ones are too alike to outvote real ones
         usual = (float(np.median(mine)) if len(mine) > 4 else max(mine)) * (1.5 if len(mine) < 4 else 1.0)
         floor, ceiling = 1.5 * usual / TENTH, 2.5 * few * max(values) / TENTH
