@@ -125,7 +125,7 @@ def _scores(
     fixed = np.array([learned.limit.get(test.key, np.inf) for test in piece.tests])
     usual = np.array([rates.get(test.relation.name, 0.0) * limits.span_s(test) for test in piece.tests])
     moved = piece.moved - usual
-    limit = np.minimum(fixed, past.limits(piece, moved, limits.least_of(piece, vehicle)))
+    limit = past.limits(piece, moved, fixed, limits.least_of(piece, vehicle))
     limit[:, ~np.isfinite(fixed)] = np.inf
     return np.where(np.isfinite(limit), moved / limit, np.nan), limit
 
@@ -211,4 +211,6 @@ def _episode(
     peak = np.nan_to_num(np.abs(score[ticks]))
     i, k = np.unravel_index(int(np.argmax(peak)), peak.shape)
     start_s, end_s, test = float(time[ticks[0]]), float(time[ticks[-1]]), piece.tests[int(k)]
-    return Episode(start_s, end_s, named.device, named.candidates, test.key, float(peak[i, k]), float(limit[ticks[i], k]))
+    return Episode(
+        start_s, end_s, named.device, named.candidates, test.key, float(peak[i, k]), float(limit[ticks[i], k])
+    )

@@ -7,7 +7,7 @@ itself shows what is usual for these sensors.
 import numpy as np
 from jaxtyping import Float, Int
 
-from sensorfault.relations.grid import STEP_S, Grid
+from sensorfault.relations.grid import GRAVITY, STEP_S, Grid
 from sensorfault.relations.signals import Signal
 from sensorfault.relations.tests_of import Piece
 
@@ -15,19 +15,21 @@ BLOCK_S = 20.0  # largest changes are kept of blocks of this length
 LEAST_BLOCKS = 4  # before there are so many, the past says nothing
 # Healthy logs of all kinds exceed the largest change of their past at most 3.4 times, if they move no more than in it.
 MOST = 4.0
+NOVEL = 1.5  # the limits of a class hold for motion that is at most so much more violent than the log's past
 STATES = ("gyro", "accelerometer")  # what shows how the vehicle moves
-GRAVITY = 9.80665  # [m/s^2]
 SELF_DRIFTING = "accelerometer|accelerometer"  # two zeros part by warmth and tilt, which nothing here measures
 
 
-def limits(piece: Piece, moved: Float[np.ndarray, "T K"], least: Float[np.ndarray, " K"]) -> Float[np.ndarray, "T K"]:
-    """The limit of each test at each tick by the past; infinite where that says nothing.
+def limits(
+    piece: Piece, moved: Float[np.ndarray, "T K"], fixed: Float[np.ndarray, " K"], least: Float[np.ndarray, " K"]
+) -> Float[np.ndarray, "T K"]:
+    """The limit of each test at each tick: the fixed one, or the narrower one that the past shows.
 
-    `moved`: changes without their usual value, in their own units. `least`: no limit lies below. A tick knows only
-    blocks that ended before its window began. More violent motion than in the past widens the limit by the square of
-    how much more; the motion is never measured by a sensor that the test compares.
+    `moved`: changes without their usual value, in their own units. `least`: no limit by the past lies below. A tick
+    knows only blocks that ended before its window began. More violent motion than in the past widens both, by the
+    square of how much more (the fixed one beyond NOVEL). No sensor that the test compares measures that motion.
     """
-    limit = np.full(moved.shape, np.inf)
+    limit = np.broadcast_to(fixed, moved.shape).copy()
     motion = {role: found for role in STATES if (found := _motion(piece.grid, role)) is not None}
     size = round(BLOCK_S / STEP_S)
     block = np.arange(len(moved)) // size
@@ -44,7 +46,9 @@ def limits(piece: Piece, moved: Float[np.ndarray, "T K"], least: Float[np.ndarra
             more = np.fmax(more, _running_max(x, hold * size) / np.maximum(known, 1e-9))
         enough = count >= LEAST_BLOCKS
         scale = MOST * (1 + 1 / np.maximum(count, 1)) * past * more**2
-        limit[enough, k] = np.maximum(scale, least[k])[enough]
+        beyond = fixed[k] * np.maximum(more / NOVEL, 1.0) ** 2
+        by_past = np.minimum(beyond, np.maximum(scale, least[k]))
+        limit[enough, k] = by_past[enough]
     return limit
 
 

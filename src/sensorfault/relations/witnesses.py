@@ -129,7 +129,7 @@ def course(device: str) -> Witness:
 
 
 def path(device: str) -> Witness:
-    """Way along the positions, step by step of a second."""
+    """Way along the positions: the mean of the ways that begin at each measurement of a second and step by a second."""
 
     def witness(grid: Grid) -> Float[np.ndarray, " T"] | None:
         key = f"{device}.position"
@@ -137,10 +137,9 @@ def path(device: str) -> Witness:
             return None
         signal = grid.signals[key]
         every = max(1, round(1.0 / signal.period_s))
-        time, point = signal.time[::every], signal.value[::every]
-        way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(point, axis=0).T))]
-        on = np.interp(grid.time, time, way)
-        return np.where(grid.hole(key), np.nan, on)
+        step = np.zeros(len(signal.time))
+        step[every:] = np.hypot(*(signal.value[every:] - signal.value[:-every]).T) / every
+        return grid.put(key, np.cumsum(step)[:, None])[:, 0]
 
     return witness
 
