@@ -17,7 +17,7 @@ demo: $(VENV)/.installed      ## simulate a drive, let its sensors lie, find out
 	$(BIN)/sensorfault demo --out demo
 
 test: $(VENV)/.dev            ## all tests that need nothing but this repository
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not real" --jaxtyping-packages="$(SHAPES)"
+	$(BIN)/python -m pytest -n 2 -m "not real" --jaxtyping-packages="$(SHAPES)"
 
 check: $(VENV)/.dev           ## lint, types, import contract
 	$(BIN)/ruff check
@@ -26,7 +26,7 @@ check: $(VENV)/.dev           ## lint, types, import contract
 	$(BIN)/lint-imports --no-cache
 
 real: $(VENV)/.dev            ## the tests on the real logs in SENSORFAULT_DATA
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m real
+	$(BIN)/python -m pytest -n 2 -m real
 
 wheel: $(VENV)/.dev           ## build sdist and wheel; install them elsewhere and run the demo from there
 	$(BIN)/python .ci/wheel.py
