@@ -1,5 +1,7 @@
 """Limits by a log's own past."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,17 @@ def piece(shake: np.ndarray, *devices: str) -> Piece:
     blame = tuple(((device, ""), 1.0) for device in devices)
     test = tests_of.Test(Relation("a | b", "a|b", "family", 1, lambda grid: None, lambda grid: None, blame), 4.0)
     grid = Grid({"gyro": gyro}, 0.0, DURATION_S)
-    return Piece(grid, (test,), np.zeros((len(grid.time), 1)))
+    return Piece(grid, (test,), np.zeros((len(grid.time), 1)), np.ones((len(grid.time), 1)))
+
+
+def test_where_both_go_further_than_ever_the_past_allows_more() -> None:
+    one = piece(np.full(2000, 0.1), "gnss", "wheel")
+    time = one.grid.time
+    moved = np.ones(len(time))
+    further = replace(one, common=np.where(time > 150, 3.0, 1.0)[:, None])
+    soon = np.searchsorted(time, 155.0)
+    assert limits(further, moved)[soon] == pytest.approx(3 * limits(one, moved)[soon])
+    np.testing.assert_array_equal(limits(further, moved)[time < 150], limits(one, moved)[time < 150])
 
 
 def limits(one: Piece, moved: np.ndarray, fixed: float = 100.0, least: float = 0.1) -> np.ndarray:

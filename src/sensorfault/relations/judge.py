@@ -20,6 +20,7 @@ JOIN_S = 10.0  # alarms closer than this are one episode
 LEAST_TICKS = 3  # alarms that an episode needs
 SURE = 0.6  # share of the named ticks that one device needs
 TURNED = {"acc", "compass"}  # what the attitude turns into the local frame
+GO_WHERE_THEY_POINT = {"car", "rail", "wing"}
 IMPACT = 100.0  # [m/s^2]: judging ends
 
 
@@ -75,7 +76,7 @@ def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
             grid = Grid(inside, start, end, facts_of)
             if learned is None and "steering.gain" not in facts_of:
                 facts_of.update(facts.learned(grid))
-            pieces.append(judged(grid, vehicle in ("car", "wing"), lags))
+            pieces.append(judged(grid, vehicle in GO_WHERE_THEY_POINT, lags))
     begun = limits.Learned(lags=lags, facts=facts_of, mountings=mountings, vehicle=vehicle)
     return Judged(vehicle, signals, mountings, pieces, learned or begun, [])
 

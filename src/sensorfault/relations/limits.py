@@ -13,14 +13,14 @@ from sensorfault.relations.change import ENDS_S
 from sensorfault.relations.grid import STEP_S
 from sensorfault.relations.tests_of import Piece, Test
 
-TENTH = 10.0  # a limit is this many scales
+SCALES = 13.0  # a limit is this many scales; ten let five of 24 healthy logs alarm, thirteen two (each left out)
 # Constant differences of rates that are usual for such sensors, by the part of a relation: a calibration, no fault.
 USUAL_RATE = {"gyro": 0.02, "side": 0.1, "acc": 0.6, "accelerometer": 0.6, "wheel": 1.5, "climb": 0.3, "reckoned": 0.3}
 RATE_WINDOWS_S = (4.0, 15.0)
 SPARE, MOST_FACTOR, SHARE = 1.6, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
 BLOCK_S, BLOCKS = 20.0, 5  # blocks of 20 s, or a fifth of the piece
 NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
-CLASSES = ("copter", "wing", "car", "underwater")
+CLASSES = ("copter", "wing", "car", "rail", "underwater")
 
 
 @dataclass(frozen=True)
@@ -102,8 +102,8 @@ def of_healthy(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts:
     for key, maxima in blocks.items():
         test = by_test[key][0]
         known = bounds(vehicle, test.kind)
-        least = SHARE * TENTH * known.floor if known else 0.0
-        most = TENTH * known.ceiling if known else np.inf
+        least = SHARE * SCALES * known.floor if known else 0.0
+        most = SCALES * known.ceiling if known else np.inf
         scale = min(factors[test.relation.family], MOST_FACTOR) * SPARE * float(maxima.max())
         learned.limit[key] = float(np.clip(scale, least, max(most, SPARE * float(maxima.max()))))
     return learned
@@ -127,7 +127,7 @@ def _by_test(pieces: list[Piece]) -> ByTest:
 
 
 def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dict[str, float]) -> Learned:
-    """Limits of a log from itself: ten times its usual block maximum, within the bounds of its class."""
+    """Limits of a log from itself: its usual block maximum, times SCALES, within the bounds of its class."""
     by_test = _by_test(pieces)
     rates = _rates(by_test)
     learned = Learned(rates, lags=lags, facts=facts)
@@ -139,14 +139,14 @@ def of_log(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts: dic
             continue
         if known is None:
             continue  # what healthy logs of any class show is not known: without a fit this does not vote
-        learned.limit[key] = TENTH * float(np.clip(np.median(maxima), known.floor, known.ceiling))
+        learned.limit[key] = SCALES * float(np.clip(np.median(maxima), known.floor, known.ceiling))
     return learned
 
 
 def least_of(piece: Piece, vehicle: str) -> Float[np.ndarray, " K"]:
     """Below this no limit of a test lies, however quiet its past: a share of the floor of the class."""
     known = [bounds(vehicle, test.kind) for test in piece.tests]
-    return np.array([SHARE * TENTH * one.floor if one else np.inf for one in known])
+    return np.array([SHARE * SCALES * one.floor if one else np.inf for one in known])
 
 
 def span_s(test: Test) -> float:

@@ -17,7 +17,9 @@ LEAST_BLOCKS = 4  # before there are so many, the past says nothing
 MOST = 4.0
 NOVEL = 1.5  # the limits of a class hold for motion that is at most so much more violent than the log's past
 STATES = ("gyro", "accelerometer")  # what shows how the vehicle moves
-SELF_DRIFTING = "accelerometer|accelerometer"  # two zeros part by warmth and tilt, which nothing here measures
+# Kinds whose error nothing here measures: two zeros part by warmth and tilt; a side force shows a turn the worse the
+# slower the vehicle is.
+UNMEASURED = {"accelerometer|accelerometer", "side"}
 
 
 def limits(
@@ -27,7 +29,8 @@ def limits(
 
     `moved`: changes without their usual value, in their own units. `least`: no limit by the past lies below. A tick
     knows only blocks that ended before its window began. More violent motion than in the past widens both, by the
-    square of how much more (the fixed one beyond NOVEL). No sensor that the test compares measures that motion.
+    square of how much more (the fixed one beyond NOVEL); no sensor that the test compares measures that motion. Where
+    both witnesses moved further than in the past, the narrower one widens by how much further.
     """
     limit = np.broadcast_to(fixed, moved.shape).copy()
     motion = {role: found for role in STATES if (found := _motion(piece.grid, role)) is not None}
@@ -36,7 +39,7 @@ def limits(
     for k, test in enumerate(piece.tests):
         suspects = {device.rstrip("234") for (device, _), _ in test.relation.blame}
         shown = [x for role, x in motion.items() if role not in suspects]
-        if not shown or test.relation.kind == SELF_DRIFTING:
+        if not shown or UNMEASURED & {test.relation.kind, *test.relation.kind.split("|")}:
             continue
         hold = 1 + int(np.ceil(test.window_s / BLOCK_S))
         past, count = _largest_before(np.abs(moved[:, k]), block, hold)
@@ -45,7 +48,9 @@ def limits(
             known, _ = _largest_before(np.where(np.isfinite(moved[:, k]), x, np.nan), block, hold)
             more = np.fmax(more, _running_max(x, hold * size) / np.maximum(known, 1e-9))
         enough = count >= LEAST_BLOCKS
-        scale = MOST * (1 + 1 / np.maximum(count, 1)) * past * more**2
+        known, _ = _largest_before(piece.common[:, k], block, hold)
+        further = np.fmax(1.0, piece.common[:, k] / np.maximum(known, 1e-9))
+        scale = MOST * (1 + 1 / np.maximum(count, 1)) * past * np.fmax(more**2, further)
         beyond = fixed[k] * np.maximum(more / NOVEL, 1.0) ** 2
         by_past = np.minimum(beyond, np.maximum(scale, least[k]))
         limit[enough, k] = by_past[enough]

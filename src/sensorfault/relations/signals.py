@@ -7,7 +7,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.logs.table import SAID, Channel, Log
+from sensorfault.relations.constellation import solved
 
+SATELLITES = "satellites"  # all that a receiver receives, as one device
+RANGE_ROLE = "range of a satellite"
 EARTH_M = 6_371_000.0  # mean radius
 XYZ = ("x", "y", "z")
 
@@ -61,7 +64,31 @@ def signals_of(log: Log) -> dict[str, Signal]:
         columns = {log.channels[i].name: i for i in log.of(sensor.name) if log.channels[i].kind not in SAID}
         for role, names in _roles(sensor.name.lower(), columns, log.channels):
             _add(found, log, sensor.name, role, tuple(columns[name] for name in names))
+    if not any(key.startswith("gnss") for key in found):
+        found.update(_of_satellites(log))
     return _speed_of_whom(found)
+
+
+def _of_satellites(log: Log) -> dict[str, Signal]:
+    """A receiver made of raw satellites, and by how much the range of each is off."""
+    sky = solved(log)
+    if sky is None:
+        return {}
+    parts = {
+        "gnss.position": _convention("gnss.position", (), sky.degrees),
+        "gnss.height": sky.height[:, None],
+        "gnss.velocity": sky.velocity[:, :2],
+        "gnss.climb": sky.velocity[:, 2:],
+        **{f"{name}.range": sky.off[:, i, None] for i, name in enumerate(sky.names)},
+    }
+    found = {}
+    for key, value in parts.items():
+        there = np.isfinite(value).all(axis=1)
+        device = key.partition(".")[0]
+        role, sensor = (key, SATELLITES) if device == "gnss" else (RANGE_ROLE, device)
+        if there.sum() >= 5:
+            found[key] = Signal(key, role, sensor, (), sky.time[there], value[there])
+    return found
 
 
 def _speed_of_whom(found: dict[str, Signal]) -> dict[str, Signal]:

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from sensorfault.relations import lag
 from sensorfault.relations.change import WINDOWS_2_S, WINDOWS_S, change
-from sensorfault.relations.grid import Grid, wrapped
+from sensorfault.relations.grid import Grid, unwrapped, wrapped
 from sensorfault.relations.table import Relation, residual, rows
 
 DRIFTING, LONGEST_DRIFTING_S = {"acc", "side", "steering", "accelerometer"}, 15.0
@@ -35,11 +35,16 @@ class Test:
 
 @dataclass(frozen=True)
 class Piece:
-    """The K tests of a piece on its T ticks; NaN where a test has nothing to compare."""
+    """The K tests of a piece on its T ticks; NaN where a test has nothing to compare.
+
+    `moved`: how far the two witnesses moved apart. `common`: how far both moved, by the one that moved less: no single
+    liar makes it larger.
+    """
 
     grid: Grid
     tests: tuple[Test, ...]
     moved: Float[np.ndarray, "T K"]
+    common: Float[np.ndarray, "T K"]
 
 
 def _slowest_s(grid: Grid, relation: Relation) -> float:
@@ -61,7 +66,7 @@ def _windows(relation: Relation) -> tuple[float, ...]:
 
 def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
     """All tests of a piece. `lags`: of each relation [s]; one that is not there is fitted and added."""
-    tests, moved = [], []
+    tests, moved, common = [], [], []
     duration = grid.end_s - grid.start_s
     for relation in rows(set(grid.signals), courses):
         both = relation.difference(grid)
@@ -80,6 +85,7 @@ def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
             one = change(d, window_s, relation.order)
             tests.append(Test(relation, window_s))
             moved.append(wrapped(one) if relation.circular else one)
-    if not tests:
-        return Piece(grid, (), np.zeros((len(grid.time), 0)))
-    return Piece(grid, tuple(tests), np.stack(moved, axis=1))
+            alone = [change(unwrapped(x) if relation.circular else x, window_s, relation.order) for x in (left, right)]
+            common.append(np.minimum(*np.abs(alone)))
+    shape = (len(tests), len(grid.time))
+    return Piece(grid, tuple(tests), np.reshape(moved, shape).T, np.reshape(common, shape).T)

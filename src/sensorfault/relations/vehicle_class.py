@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sensorfault.relations.signals import Signal
+from sensorfault.relations.signals import SATELLITES, Signal
 
 FAST_M_S = 9.0  # a wing does not hover: half of its flight is faster
 CLIMBS_M_S = 1.5  # what flies climbs or sinks faster than this for a twentieth of the time
@@ -10,7 +10,13 @@ CLIMB_S = 5.0
 
 
 def class_of(signals: dict[str, Signal]) -> str:
-    """One of "copter", "wing", "car", "underwater", or "unknown"."""
+    """One of "copter", "wing", "car", "rail", "underwater", or "unknown".
+
+    On the ground with raw satellites for a receiver, as trains have them, it is "rail": places that no receiver
+    smoothed need wider limits.
+    """
+    if any(signal.sensor == SATELLITES for signal in signals.values()):
+        return "rail"
     if "depth" in signals or "dvl" in signals:
         return "underwater"
     if "wheel" in signals or "steering" in signals:

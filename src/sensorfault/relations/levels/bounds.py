@@ -9,10 +9,10 @@ from sensorfault.relations.levels.finding import Finding, device_of, worst
 from sensorfault.relations.levels.windows import windows
 from sensorfault.relations.signals import Signal
 
-SPIKE_M = {"copter": 30.0, "wing": 40.0, "car": 30.0}
-CLIMB_M_S = {"copter": 35.0, "wing": 60.0, "car": 15.0}
-SPEED_M_S = {"copter": 45.0, "wing": 80.0, "car": 70.0, "underwater": 10.0}
-RISE_M_S = {"copter": 25.0, "wing": 40.0, "car": 12.0, "underwater": 5.0}
+SPIKE_M = {"copter": 30.0, "wing": 40.0, "car": 30.0, "rail": 60.0}
+CLIMB_M_S = {"copter": 35.0, "wing": 60.0, "car": 15.0, "rail": 15.0}
+SPEED_M_S = {"copter": 45.0, "wing": 80.0, "car": 70.0, "rail": 150.0, "underwater": 10.0}
+RISE_M_S = {"copter": 25.0, "wing": 40.0, "car": 12.0, "rail": 20.0, "underwater": 5.0}
 
 
 def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:

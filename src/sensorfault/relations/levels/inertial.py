@@ -23,7 +23,7 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
     for signal in grid.signals.values():
         if signal.role == "accelerometer":
             yield from _gravity(grid, signal, vehicle)
-        elif signal.role == "gyro" and vehicle == "car":
+        elif signal.role == "gyro" and vehicle in ("car", "rail"):
             yield from _rate_at_rest(grid, signal)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sensorfault.relations.levels.finding import Finding, device_of
-from sensorfault.relations.signals import Signal
+from sensorfault.relations.signals import RANGE_ROLE, SATELLITES, Signal
 
 SILENT_S, SILENT_PERIODS = 3.5, 5.0
 SETTLED = 2  # measurements before which a device has not begun
@@ -14,8 +14,9 @@ SETTLED = 2  # measurements before which a device has not begun
 def silences(signals: dict[str, Signal], pieces: list[tuple[float, float]], vehicle: str) -> Iterator[Finding]:
     """Devices without a valid measurement while the others go on; not before their first few.
 
-    A receiver under water has nothing to receive.
+    A receiver under water has nothing to receive. Satellites rise, set, and hide behind a tunnel.
     """
+    signals = {key: one for key, one in signals.items() if one.role != RANGE_ROLE and one.sensor != SATELLITES}
     for device in dict.fromkeys(device_of(signal) for signal in signals.values()):
         if vehicle == "underwater" and device.startswith("gnss"):
             continue
