@@ -9,7 +9,8 @@ import pytest
 from relations.drives import changed
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.relations.constellation import solved
-from sensorfault.runtime.compared import compare
+from sensorfault.relations.signals import signals_of
+from sensorfault.runtime.compared import compare, comparison_of
 from sensorfault.simulation.train import Ride, ride
 
 SECONDS = 240.0
@@ -71,6 +72,25 @@ def test_slipping_wheels_are_named_and_no_satellite() -> None:
 @pytest.mark.parametrize("seed", [1, 2])
 def test_healthy_rides_are_silent(seed: int) -> None:
     assert named(with_wheels(ridden(seed))) == set()
+
+
+def test_ranges_may_err_as_much_as_they_did_in_healthy_rides() -> None:
+    made = ridden()
+    sky = solved(made.log)
+    assert sky is not None
+    liar = sky.names[int(np.argmax(np.isfinite(sky.off).sum(axis=0)))]
+    far = changed(with_wheels(made), f"{liar}.corrected_m", 120.0, 160.0, lambda t, x: x + 60.0)
+    known = comparison_of(far)
+    assert compare(far, known).events == ()
+    further = changed(with_wheels(made), f"{liar}.corrected_m", 120.0, 160.0, lambda t, x: x + 150.0)
+    assert {event.sensor for event in compare(further, known).events} == {liar}
+
+
+def test_an_odometry_of_speeds_is_of_the_wheels() -> None:
+    log = with_wheels(ridden())
+    named = replace(log, sensors=(*log.sensors[:-1], replace(log.sensors[-1], name="odometry")))
+    named = replace(named, channels=(*log.channels[:-1], replace(log.channels[-1], sensor="odometry", name="x")))
+    assert signals_of(named)["wheel"].sensor == "odometry"
 
 
 def test_too_few_satellites_are_no_receiver() -> None:

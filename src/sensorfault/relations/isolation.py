@@ -5,13 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from sensorfault.relations.table import LASTING
 from sensorfault.relations.tests_of import Test
 
 DEAD = 0.4  # what is left below this share of its limit is no disagreement
 MOST = 5.0  # a group of tests counts no more than this many limits
 EXTRA = 0.15  # price of a further part of one device that must be wrong
-EXTRA_RECEIVER = 0.02  # a receiver is often wrong as a whole
+EXTRA_RECEIVER = 0.06  # a receiver is often wrong as a whole
 QUIET = 0.08  # price if what must be wrong shows nowhere else where it should
+FAST_S = 8.0  # a change over a window up to this is fast
 MORE, RATIO = 0.05, 1.6  # the next explanation must cost this much more for a name
 
 
@@ -28,6 +30,7 @@ class _Group:
     """Tests of one family over one window: one fault moves them together."""
 
     family: str
+    window_s: float
     tests: Int[np.ndarray, " g"]
 
 
@@ -47,7 +50,7 @@ class Isolation:
         for k, test in enumerate(tests):
             if np.isfinite(limit[k]):
                 found.setdefault((test.relation.family, test.window_s), []).append(k)
-        self._groups = [_Group(family, np.array(group)) for (family, _), group in found.items()]
+        self._groups = [_Group(*key, np.array(group)) for key, group in found.items()]
 
     def name(self, scores: Float[np.ndarray, "n K"]) -> Named:
         """Name the device that explains n moments best. `scores`: changes in units of their limits, NaN untested."""
@@ -65,6 +68,7 @@ class Isolation:
         total = np.zeros(len(scores))
         used = np.zeros((len(scores), len(mine)), bool)
         shown: dict[str, Float[np.ndarray, "n p"]] = {}
+        fast = np.zeros((len(scores), len(mine)))
         for group in self._groups:
             z = scores[:, group.tests]
             gain = self._gain[group.tests][:, mine]
@@ -74,12 +78,13 @@ class Isolation:
             tested = np.stack([np.isfinite(z[:, gain[:, p] != 0]).any(axis=1) for p in range(len(mine))], axis=1)
             seen = np.where(tested, seen, np.nan)
             shown[group.family] = np.fmax(shown[group.family], seen) if group.family in shown else seen
+            fast = np.fmax(fast, seen) if group.window_s <= FAST_S else fast
             left, large = _left(z, gain)
             used |= large
             total += (np.maximum(np.abs(left) - DEAD, 0.0) ** 2).sum(axis=1)
         further = EXTRA_RECEIVER if device.startswith("gnss") else EXTRA
         total += further * np.maximum(used.sum(axis=1) - 1, 0)
-        return np.asarray(total + QUIET * _quiet(shown))
+        return np.asarray(total + QUIET * _quiet(shown, fast))
 
 
 def _left(
@@ -103,9 +108,13 @@ def _left(
     return z, large
 
 
-def _quiet(shown: dict[str, Float[np.ndarray, "n p"]]) -> Bool[np.ndarray, " n"]:
-    """Moments at which a part that is over its limit in one family of tests is not to be seen at all in another."""
-    stacked = np.stack(list(shown.values()))
-    most = np.nanmax(np.where(np.isnan(stacked), -np.inf, stacked), axis=0)
-    least = np.nanmin(np.where(np.isnan(stacked), np.inf, stacked), axis=0)
-    return np.asarray(((most > 1) & (least < DEAD)).any(axis=1))
+def _quiet(shown: dict[str, Float[np.ndarray, "n p"]], fast: Float[np.ndarray, "n p"]) -> Bool[np.ndarray, " n"]:
+    """Moments at which a part that is over its limit is not to be seen at all in a family of tests that shows it.
+
+    `shown`: its largest score in each family; `fast`: in any over a short window.
+    """
+    lasting = [most for family, most in shown.items() if family in LASTING]
+    most = np.fmax.reduce(list(shown.values()))
+    over = (most > 1) & (np.fmin.reduce(lasting) < DEAD) if lasting else np.zeros(most.shape, bool)
+    over |= (fast > 1) & (np.fmin.reduce(list(shown.values())) < DEAD)
+    return np.asarray(over.any(axis=1))

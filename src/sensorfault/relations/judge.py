@@ -11,7 +11,8 @@ from sensorfault.relations.grid import STEP_S, Grid, pieces_of
 from sensorfault.relations.isolation import Isolation, Named
 from sensorfault.relations.levels.finding import Finding, runs
 from sensorfault.relations.signals import Signal, signals_of
-from sensorfault.relations.tests_of import LONGEST_DRIFTING_S, Piece, judged
+from sensorfault.relations.tests_of import Piece, judged
+from sensorfault.relations.usual import Usual
 from sensorfault.relations.vehicle_class import class_of
 from sensorfault.relations.witnesses import SLOW_FAST_S
 
@@ -21,6 +22,7 @@ LEAST_TICKS = 3  # alarms that an episode needs
 SURE = 0.6  # share of the named ticks that one device needs
 TURNED = {"acc", "compass"}  # what the attitude turns into the local frame
 GO_WHERE_THEY_POINT = {"car", "rail", "wing"}
+AGREES_S = 60.0  # so long an attitude that was wrong must agree before it turns vectors again
 IMPACT = 100.0  # [m/s^2]: judging ends
 
 
@@ -85,6 +87,9 @@ def fitted(logs: list[Log]) -> limits.Learned:
     """What healthy logs of one vehicle teach: usual changes, limits, lags, axes."""
     result = _prepared(logs, None)
     begun = result.learned
+    for piece in result.pieces:
+        for fact, value in levels.ranges.largest(piece.grid).items():
+            begun.facts[fact] = max(value, begun.facts.get(fact, value))
     learned = limits.of_healthy(result.pieces, result.vehicle, begun.lags, begun.facts)
     return replace(learned, mountings=result.mountings, vehicle=result.vehicle)
 
@@ -97,10 +102,10 @@ def judge(log: Log, learned: limits.Learned | None = None) -> Judged:
         begun = result.learned
         own = limits.of_log(pieces, vehicle, begun.lags, begun.facts)
         result.learned = replace(own, mountings=result.mountings, vehicle=vehicle)
-    rates = limits.rates_of(pieces, result.learned)
+    usual = Usual(learned.rates if learned else {})
     end_s = _impact(signals)
     for piece in pieces:
-        score, limit = _scores(piece, result.learned, rates, vehicle)
+        score, limit = _scores(piece, result.learned, usual.changes(piece), vehicle)
         found = [one for one in levels.findings(piece.grid, vehicle) if one.start_s < end_s]
         _leave_out(piece, score, found)
         if np.isfinite(end_s):
@@ -120,11 +125,10 @@ def _impact(signals: dict[str, Signal]) -> float:
 
 
 def _scores(
-    piece: Piece, learned: limits.Learned, rates: dict[str, float], vehicle: str
+    piece: Piece, learned: limits.Learned, usual: Float[np.ndarray, "T K"], vehicle: str
 ) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, "T K"]]:
     """Changes without their usual value, in units of their limits; and those limits."""
     fixed = np.array([learned.limit.get(test.key, np.inf) for test in piece.tests])
-    usual = np.array([rates.get(test.relation.name, 0.0) * limits.span_s(test) for test in piece.tests])
     moved = piece.moved - usual
     limit = past.limits(piece, moved, fixed, limits.least_of(piece, vehicle))
     limit[:, ~np.isfinite(fixed)] = np.inf
@@ -148,7 +152,7 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
     alone = _over(np.where(by_attitude | turned, np.nan, score))
     lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~alone
     votes = np.where(by_attitude, np.nan, score)
-    votes[np.ix_(_soon_after(lone), turned)] = np.nan  # what a wrong attitude turned says nothing
+    votes[np.ix_(_distrusted(lone, _over(score[:, turned])), turned)] = np.nan  # a wrong attitude turned these
     over = _over(votes)
     episodes = []
     for device, alarm in ((None, over), ("attitude", lone)):
@@ -166,13 +170,20 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
 
 def _over(score: Float[np.ndarray, "T K"]) -> np.ndarray:
     """Ticks at which some test is over its limit."""
-    return np.asarray(np.nan_to_num(np.abs(score)).max(axis=1) > 1)
+    return np.asarray(np.nan_to_num(np.abs(score)).max(axis=1, initial=0.0) > 1)
 
 
-def _soon_after(ticks: np.ndarray) -> np.ndarray:
-    """These ticks, and those whose windows still hold them."""
-    width = round(LONGEST_DRIFTING_S / STEP_S)
-    return np.convolve(ticks, np.ones(width))[: len(ticks)] > 0
+def _distrusted(alarm: np.ndarray, over: np.ndarray) -> np.ndarray:
+    """Ticks from an alarm of the attitude until for a minute what it turns has agreed with all others."""
+    found = np.zeros(len(alarm), bool)
+    if not alarm.any():
+        return found
+    until = -1
+    for i, (now, off) in enumerate(zip(alarm, over, strict=True)):
+        if now or (off and i <= until):
+            until = i + round(AGREES_S / STEP_S)
+        found[i] = i <= until
+    return found
 
 
 def _some(ticks: np.ndarray, most: int = 60) -> np.ndarray:

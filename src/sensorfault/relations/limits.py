@@ -17,9 +17,8 @@ SCALES = 13.0  # a limit is this many scales; ten let five of 24 healthy logs al
 # Constant differences of rates that are usual for such sensors, by the part of a relation: a calibration, no fault.
 USUAL_RATE = {"gyro": 0.02, "side": 0.1, "acc": 0.6, "accelerometer": 0.6, "wheel": 1.5, "climb": 0.3, "reckoned": 0.3}
 RATE_WINDOWS_S = (4.0, 15.0)
-SPARE, MOST_FACTOR, SHARE = 1.6, 3.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
+SPARE, MOST_FACTOR, SHARE = 2.0, 4.0, 0.25  # of limits from healthy driving: margin; largest factor; share of the floor
 BLOCK_S, BLOCKS = 20.0, 5  # blocks of 20 s, or a fifth of the piece
-NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
 CLASSES = ("copter", "wing", "car", "rail", "underwater")
 
 
@@ -166,17 +165,6 @@ def _rates(by_test: ByTest) -> dict[str, float]:
             most = usual_rate(test)
             found[test.relation.name] = float(np.clip(np.nanmedian(moved) / span_s(test), -most, most))
     return found
-
-
-def rates_of(pieces: list[Piece], learned: Learned) -> dict[str, float]:
-    """The usual rates of a log, near those that healthy logs had: a zero differs a little from drive to drive."""
-    by_test = _by_test(pieces)
-    own, most = _rates(by_test), {test.relation.name: usual_rate(test) * NEAR for test, _ in by_test.values()}
-    known = learned.rates
-    return {
-        name: known[name] + float(np.clip(rate - known[name], -most[name], most[name])) if name in known else rate
-        for name, rate in own.items()
-    }
 
 
 def usual_rate(test: Test) -> float:

@@ -48,10 +48,11 @@ _ESTIMATE = re.compile(
     r"uncalibrated"  # nor is a device with a zero and axes of its own
 )
 _INERTIAL = frozenset({"gyro", "accelerometer", "yaw_rate"})
-SELDOM_S = 0.2  # an inertial sensor with longer steps was logged as samples, between which anything may happen
+SELDOM_S = 0.25  # an inertial sensor with longer steps was logged as samples, between which anything may happen
 _BAROMETER = re.compile(r"(?<!differential_)(?<!raw_)(?<!filtered_)baro|pressure_height|air_data|static")
 _WHEEL = re.compile(r"wheel|odo")
 _COMPASS = re.compile(r"compass|magnet|hdt|heading")
+_SPEED_UNITS = {"m/s", "km/h", "mph", "kn"}
 _RATE_UNITS, _FIELD_UNITS = ("rad/s", "deg/s", "mrad/s"), ("gauss", "mgauss", "uT", "T", "nT")
 
 
@@ -59,7 +60,7 @@ def signals_of(log: Log) -> dict[str, Signal]:
     """All signals of a log whose role is known, by key."""
     found: dict[str, Signal] = {}
     for sensor in log.sensors:
-        if _ESTIMATE.search(sensor.name.lower()):
+        if _ESTIMATE.search(sensor.name.lower()) and not _of_wheels(log, sensor.name):
             continue
         columns = {log.channels[i].name: i for i in log.of(sensor.name) if log.channels[i].kind not in SAID}
         for role, names in _roles(sensor.name.lower(), columns, log.channels):
@@ -67,6 +68,12 @@ def signals_of(log: Log) -> dict[str, Signal]:
     if not any(key.startswith("gnss") for key in found):
         found.update(_of_satellites(log))
     return _speed_of_whom(found)
+
+
+def _of_wheels(log: Log, sensor: str) -> bool:
+    """Whether an "odometry" is no more than a speed: that of the wheels, not what an estimator makes of it."""
+    units = {log.channels[i].unit for i in log.of(sensor)}
+    return _WHEEL.search(sensor.lower()) is not None and units <= _SPEED_UNITS
 
 
 def _of_satellites(log: Log) -> dict[str, Signal]:
@@ -143,7 +150,7 @@ def _roles(sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]) 
     elif "depth" in columns and "range" not in columns:
         role("depth", "depth")
     elif _WHEEL.search(sensor) or "wheel_speed" in columns:
-        wheels = tuple(name for name in columns if unit[name] in ("m/s", "km/h", "mph", "kn"))
+        wheels = tuple(name for name in columns if unit[name] in _SPEED_UNITS)
         if wheels:
             roles.append(("wheel", wheels))
     elif sensor == "speed":

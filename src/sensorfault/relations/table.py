@@ -12,6 +12,9 @@ from sensorfault.relations.witnesses import Witness
 
 # Who moves a relation: (device, part of the device) and the sign. A device may be wrong in several parts at once.
 Blame = dict[tuple[str, str], float]
+# Families of tests that show an error for as long as it lasts; the others (of velocities, of slopes) show only how it
+# changes.
+LASTING = ("up", "north", "east", "way", "yaw", "roll", "pitch")
 
 
 @dataclass(frozen=True)

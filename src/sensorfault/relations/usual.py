@@ -1,0 +1,58 @@
+"""How fast two healthy witnesses part all the time, as far as a log has shown it: the zero and scale of each sensor."""
+
+import numpy as np
+from jaxtyping import Float
+
+from sensorfault.relations.grid import STEP_S
+from sensorfault.relations.limits import BLOCK_S, RATE_WINDOWS_S, span_s, usual_rate
+from sensorfault.relations.tests_of import Piece
+
+FIRST_BLOCKS = 2  # what these show holds for them, too
+NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
+EVERY = 5  # a median of every fifth tick is as good
+
+
+class Usual:
+    """The usual change of each test at each tick, from what came before; pieces of one log in their order.
+
+    Args:
+        known: the usual rate of each relation in the drives that the limits come from; none without a fit.
+    """
+
+    def __init__(self, known: dict[str, float]) -> None:
+        self._known = known
+        self._seen: dict[str, list[Float[np.ndarray, " n"]]] = {}
+
+    def changes(self, piece: Piece) -> Float[np.ndarray, "T K"]:
+        """Those of the next piece; a fault that begins later changes none of them."""
+        rates = {}
+        for name in dict.fromkeys(test.relation.name for test in piece.tests):
+            mine = [k for k, test in enumerate(piece.tests) if test.relation.name == name]
+            shown = [
+                k for k in mine if piece.tests[k].window_s in RATE_WINDOWS_S and piece.tests[k].relation.order == 1
+            ]
+            if shown:
+                rate = np.stack([piece.moved[:, k] / span_s(piece.tests[k]) for k in shown], axis=1)
+                rates[name] = self._rates(name, rate, usual_rate(piece.tests[shown[0]]))
+        none = np.zeros(len(piece.grid.time))
+        columns = [rates.get(test.relation.name, none) * span_s(test) for test in piece.tests]
+        return np.reshape(columns, (len(columns), len(none))).T
+
+    def _rates(self, name: str, rate: Float[np.ndarray, "T m"], most: float) -> Float[np.ndarray, " T"]:
+        """The usual rate at each tick: the median of all before its block, within what is usual for such sensors."""
+        size = round(BLOCK_S / STEP_S)
+        seen = self._seen.setdefault(name, [])
+        first = FIRST_BLOCKS * size if not seen else 0
+        found = np.empty(len(rate))
+        for start in range(0, len(rate), size):
+            before = [*seen, rate[: max(start, first) : EVERY].ravel()]
+            found[start : start + size] = self._usual(name, np.concatenate(before), most)
+        seen.append(rate[::EVERY].ravel())
+        return found
+
+    def _usual(self, name: str, seen: Float[np.ndarray, " n"], most: float) -> float:
+        seen = seen[np.isfinite(seen)]
+        shown = float(np.median(seen)) if len(seen) > 50 / EVERY else self._known.get(name, 0.0)
+        if name in self._known:
+            shown = self._known[name] + float(np.clip(shown - self._known[name], -NEAR * most, NEAR * most))
+        return float(np.clip(shown, -most, most))
