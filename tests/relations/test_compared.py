@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from relations import drives
 from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
@@ -94,6 +95,26 @@ def test_the_mounting_does_not_matter(turn: np.ndarray, gravity: float) -> None:
     assert named(turned) == named(plain)
     np.testing.assert_array_equal(turned.sensor, plain.sensor)
     assert named(compare(drives.mounted(copter(), turn, gravity))) == set()
+
+
+ASKEW = [Rotation.random(random_state=seed).as_matrix() for seed in range(3)]
+
+
+@pytest.mark.parametrize("gravity", [1.0, -1.0])
+@pytest.mark.parametrize("turn", ASKEW, ids=str)
+@pytest.mark.parametrize("vehicle", ["copter", "car"])
+def test_a_unit_may_be_mounted_askew(vehicle: str, turn: np.ndarray, gravity: float) -> None:
+    log, faults = (copter(), COPTER_FAULTS) if vehicle == "copter" else (drives.car(seed=3), CAR_FAULTS)
+    path, how, sensors = faults["the barometer is off" if vehicle == "copter" else "wheels slip"]
+    bad = drives.mounted(drives.changed(log, path, 150.0, 200.0, how), turn, gravity)
+    found = compare(bad, comparison_of(*[drives.mounted(one, turn, gravity) for one in healthy(vehicle)]))
+    assert named(found) == ({sensors} if isinstance(sensors, str) else sensors)
+    assert named(compare(drives.mounted(log, turn, gravity))) == set()
+
+
+def healthy(vehicle: str) -> list[Log]:
+    made = drives.copter if vehicle == "copter" else drives.car
+    return [made(seed=1), made(seed=2)]
 
 
 def test_a_silent_receiver_is_missing_and_nobody_else() -> None:

@@ -14,8 +14,10 @@ from sensorfault.relations.signals import Signal
 
 TURN_RAD = 0.35  # all turns together must be at least this, else they decide nothing
 MARGIN = 1.5  # the best mounting must explain the turns this much better than the next one
+SURE = 1.15  # the same for the forward axis
 CLIP_RAD, ALIKE = 0.3, 0.4  # a turn counts no more than this; how alike turns by gyro and by course must be
 RATE_S = 1.0  # turns are compared over steps of this
+ASKEW = np.radians(6)  # a unit turned further than this from the vehicle's axes is mounted askew
 INERTIAL = ("gyro", "accelerometer", "magnetometer")
 
 
@@ -123,9 +125,33 @@ def _by_attitude(attitude: Signal, gyro: Signal) -> Float[np.ndarray, "3 3"] | N
     body, turned = body[there], turned[there]
     if np.abs(body).sum() < TURN_RAD:
         return None
-    left = [np.minimum(np.abs(turned @ turn.T - body), 0.3).mean() for turn in ROTATIONS]
+    left = [_left(turned, body, turn) for turn in ROTATIONS]
     order = np.argsort(left)
-    return ROTATIONS[order[0]] if left[order[1]] > MARGIN * left[order[0]] else None
+    straight = ROTATIONS[order[0]] if left[order[1]] > MARGIN * left[order[0]] else None
+    askew = _askew(turned, body)
+    if askew is None or (straight is not None and _between(straight, askew) < ASKEW):
+        return straight
+    return askew if left[order[0]] > MARGIN * _left(turned, body, askew) else straight
+
+
+def _left(turned: Float[np.ndarray, "n 3"], body: Float[np.ndarray, "n 3"], turn: Float[np.ndarray, "3 3"]) -> float:
+    """What a mounting leaves unexplained of the turns."""
+    return float(np.minimum(np.abs(turned @ turn.T - body), CLIP_RAD).mean())
+
+
+def _askew(turned: Float[np.ndarray, "n 3"], body: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3 3"] | None:
+    """The rotation that fits the turns best (Kabsch 1976); None if they are about one axis only."""
+    sizes = np.linalg.norm(body - np.median(body, axis=0), axis=1)
+    few = sizes <= np.percentile(sizes, 98)  # without what may be jumps of the attitude
+    left, size, right = np.linalg.svd((body[few] - body[few].mean(0)).T @ (turned[few] - turned[few].mean(0)))
+    if size[1] < 0.02 * size[0]:
+        return None
+    return np.asarray(left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right)
+
+
+def _between(one: Float[np.ndarray, "3 3"], other: Float[np.ndarray, "3 3"]) -> float:
+    """The angle between two rotations [rad]."""
+    return float(np.arccos(np.clip((np.trace(one.T @ other) - 1) / 2, -1.0, 1.0)))
 
 
 def _sign(acc: Signal | None, turn: Float[np.ndarray, "3 3"], attitude: Signal) -> float:
@@ -142,18 +168,26 @@ def _by_course(signals: dict[str, Signal], gyro: Signal, acc: Signal | None) -> 
     if acc is None:
         return Mounting(None, why="no accelerometer shows where down is")
     mean = np.median(acc.value, axis=0)
-    axis = int(np.argmax(np.abs(mean)))
-    if np.abs(mean[axis]) < 0.7 * GRAVITY:
-        return Mounting(None, why="no axis of the accelerometer carries gravity")
-    turning = _turning(signals, gyro.value[:, axis], gyro.time)
-    down = np.zeros(3)
-    down[axis] = turning or -np.sign(mean[axis])
+    if np.linalg.norm(mean) < 0.7 * GRAVITY:
+        return Mounting(None, why="the accelerometer does not show gravity")
+    vertical = _vertical(mean)
+    turning = _turning(signals, gyro.value @ vertical, gyro.time)
+    down = vertical * (turning or -1.0)
     gravity = -1.0 if mean @ down > 0 else 1.0
-    forward, sure = _forward(signals, acc, gravity, axis)
+    forward, sure = _forward(signals, acc, gravity, vertical)
     lacks = [] if turning else ["no turns with a course to compare: the sign of the yaw rate is unknown"]
     lacks += [] if sure else ["too little braking: the forward axis is unknown"]
     turn = np.stack([forward, np.cross(down, forward), down])
     return Mounting(turn, gravity, sure, bool(turning), "; ".join(lacks))
+
+
+def _vertical(mean: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    """The direction of gravity: that of an axis of the unit, unless it is mounted askew."""
+    there = mean / np.linalg.norm(mean)
+    axis = np.zeros(3)
+    largest = int(np.argmax(np.abs(there)))
+    axis[largest] = np.sign(there[largest])
+    return axis if np.arccos(min(there @ axis, 1.0)) < ASKEW else there
 
 
 def _turning(signals: dict[str, Signal], rate: Float[np.ndarray, " n"], time: Float[np.ndarray, " n"]) -> float:
@@ -194,9 +228,11 @@ def _courses(signals: dict[str, Signal]) -> list[tuple[Float[np.ndarray, " n"], 
     return found
 
 
-def _forward(signals: dict[str, Signal], acc: Signal, gravity: float, axis: int) -> tuple[Float[np.ndarray, "3"], bool]:
-    """The horizontal axis along which speed changes, and whether that is sure."""
-    choices = [sign * np.eye(3)[i] for i in range(3) if i != axis for sign in (1.0, -1.0)]
+def _forward(
+    signals: dict[str, Signal], acc: Signal, gravity: float, vertical: Float[np.ndarray, "3"]
+) -> tuple[Float[np.ndarray, "3"], bool]:
+    """The horizontal direction along which speed changes, and whether that is sure."""
+    choices = _level(vertical)
     speed = next((signals[key] for key in ("wheel", "gnss.speed") if key in signals), None)
     if speed is None and "gnss.velocity" in signals:
         velocity = signals["gnss.velocity"]
@@ -210,4 +246,23 @@ def _forward(signals: dict[str, Signal], acc: Signal, gravity: float, axis: int)
     pulled = pulled[n:] - pulled[:-n]
     left = [float(np.abs(gained - pulled @ choice).mean()) for choice in choices]
     order = np.argsort(left)
-    return choices[order[0]], bool(left[order[1]] > 1.15 * left[order[0]] and np.abs(gained).max() > 1.0)
+    best, sure = choices[order[0]], bool(left[order[1]] > SURE * left[order[0]] and np.abs(gained).max() > 1.0)
+    # the direction that fits best: g = arg min |gained - pulled (cos a e1 + sin a e2)|
+    plane = np.stack(choices[:2])
+    there = np.isfinite(gained) & np.isfinite(pulled).all(axis=1)
+    share = np.linalg.lstsq(pulled[there] @ plane.T, gained[there], rcond=None)[0]
+    askew = share @ plane / max(float(np.linalg.norm(share)), 1e-12)
+    between = float(np.arccos(np.clip(askew @ best, -1.0, 1.0)))
+    if between > ASKEW and left[order[0]] > SURE * float(np.abs(gained - pulled @ askew).mean()):
+        return askew, bool(np.abs(gained).max() > 1.0)
+    return best, sure
+
+
+def _level(vertical: Float[np.ndarray, "3"]) -> list[Float[np.ndarray, "3"]]:
+    """Four directions across the vertical, at right angles; those of the unit's axes if it is not askew."""
+    least = np.zeros(3)
+    least[int(np.argmin(np.abs(vertical)))] = 1.0
+    first = least - (least @ vertical) * vertical
+    first /= np.linalg.norm(first)
+    second = np.cross(vertical, first)
+    return [first, second, -first, -second]

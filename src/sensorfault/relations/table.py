@@ -166,7 +166,9 @@ def _angles(keys: set[str], receivers: list[str], courses: bool) -> Iterator[Rel
         yaws.append(("heading", "heading", w.angle("heading", 0), {("heading", ""): 1.0}))
     for n in _numbers(keys, "magnetometer"):
         yaws.append(("compass", f"magnetometer{n}", w.compass(n), {(f"magnetometer{n}", ""): 1.0}))
-    yaws += [("course", f"{g}.course", w.course(g), {(g, "course"): 1.0}) for g in receivers] if courses else []
+    for g in receivers if courses else []:
+        part = "velocity" if f"{g}.velocity" in keys else "course"  # of which it is made
+        yaws.append(("course", f"{g}.course", w.course(g), {(g, part): 1.0}))
     for i, (kind, name, left, mine) in enumerate(yaws):
         for other, second, right, theirs in yaws[i + 1 :]:
             if kind == other == "gyro":
