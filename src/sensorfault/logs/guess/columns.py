@@ -21,6 +21,8 @@ _STEADY = 0.15  # relative spread below which three axes have a steady length
 
 OTHER_TIME = "another time, or bookkeeping of it"
 QUALITY = "quality or state, not a measurement of motion"
+_OF_LENGTH_1, _NEARLY_ALL = 0.01, 0.99
+_SENSORS = ("gyroscope", "gyro", "accelerometer", "acceleration", "magnetometer")  # as the files of phones are called
 BEACON = frozenset({"range", "position", "depth"})  # what a beacon tells of itself
 
 
@@ -42,12 +44,14 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
     """
     columns, left_out = [], []
     dotted = are_dotted(source.frame.columns)
+    pose = pose_of(source, time)
     for name in source.frame.columns:
         if name == time:
             continue
         device = device_of(name) if dotted else ""
         own = source.units.get(name, "")
         meaning = meaning_of(name) if device else read_name(name, own, source.frame.columns)
+        meaning = pose.get(name) or _by_file(meaning, source) or meaning
         if meaning.kind == "time":
             left_out.append((name, OTHER_TIME))
         elif meaning.kind == "quality":
@@ -67,8 +71,36 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
                 left_out.append((name, reason))
             else:
                 columns.append(column)
-    headerless = bool(columns) and all(re.fullmatch(r"c\d+", column.name) for column in columns)
+    headerless = bool(columns) and not pose and all(re.fullmatch(r"c\d+", column.name) for column in columns)
     return _by_value(columns) if headerless else columns, left_out
+
+
+def _by_file(meaning: Meaning, source: Source) -> Meaning | None:
+    """What a bare x, y or z is in a file or table that is called after its sensor; None if that says nothing."""
+    if meaning.kind != "local_position" or meaning.stem:
+        return None
+    for called in (source.table or "", source.path.stem):
+        sensor = next((word for word in _SENSORS if word in called.lower().replace("_", "")), None)
+        if sensor is not None:
+            found = read_name(f"{sensor}_{meaning.axis}", meaning.unit)
+            return replace(found, stem="") if found.axis == meaning.axis else None
+    return None
+
+
+def pose_of(source: Source, time: str | None) -> dict[str, Meaning]:
+    """The columns of a table without names that are a position and a quaternion, of length 1: a TUM trajectory."""
+    names = [name for name in source.frame.columns if name != time]
+    if len(names) != 7 or not all(re.fullmatch(r"c\d+", name) for name in names):
+        return {}
+    try:
+        value = np.column_stack([source.column(name).cast(pl.Float64).to_numpy() for name in names[3:]])
+    except LogError:
+        return {}
+    length = np.linalg.norm(value, axis=1)
+    if not (np.abs(length[np.isfinite(length)] - 1) < _OF_LENGTH_1).mean() > _NEARLY_ALL:
+        return {}
+    kinds = [("local_position", axis) for axis in "xyz"] + [("quaternion", axis) for axis in "xyzw"]
+    return {name: Meaning(kind, axis, "", "") for name, (kind, axis) in zip(names, kinds, strict=True)}
 
 
 def beacons_of(meanings: Iterable[Meaning]) -> set[str]:

@@ -51,8 +51,11 @@ def find_devices(parts: Mapping[str, list[Column]], source: Source, clock: Clock
     """
     found = {name: Device(name, columns, _delivery(columns, source, clock)) for name, columns in parts.items()}
     for name, lead, others in _DEVICES:
-        if lead not in found:
-            continue
+        if lead not in found:  # a receiver without a position: the first of what it has leads
+            there = [part for part in others if part in found]
+            if name != "gnss" or not there:
+                continue
+            lead, others = there[0], tuple(there[1:])
         leader = found[lead]
         joined = [part for part in others if part in found and _together(leader, found[part])]
         order = [part for part in found if part == lead or part in joined]

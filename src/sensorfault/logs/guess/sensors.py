@@ -10,6 +10,7 @@ from sensorfault.logs.entries import ChannelEntry, SensorEntry
 from sensorfault.logs.guess import units
 from sensorfault.logs.guess.columns import BEACON, Column, beacons_of
 from sensorfault.logs.guess.devices import Device, find_devices
+from sensorfault.logs.guess.words import RECEIVERS
 from sensorfault.logs.held import any_of
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.units import to_si
@@ -62,8 +63,9 @@ def _part(column: Column, columns: Sequence[Column], has_position: bool) -> str:
     if not kind:
         return re.sub(r"_?\d+$", "", meaning.axis) or meaning.axis
     alike = {other.meaning.stem for other in columns if other.meaning.kind == meaning.kind}
-    course = kind == "heading" and meaning.axis in _COURSES
-    if has_position and (course or kind in _FROM_GNSS) and len(alike) == 1:
+    course = kind == "heading" and meaning.axis in _COURSES and "compass" not in meaning.stem
+    received = has_position or RECEIVERS.search(meaning.stem)
+    if received and (course or kind in _FROM_GNSS) and len(alike) == 1:
         return "gnss_course" if course else f"gnss_{kind}"
     if meaning.stem and (len(alike) > 1 or kind == "velocity"):
         return meaning.stem if kind == "velocity" else f"{meaning.stem}_{kind}"

@@ -10,6 +10,7 @@ _TURN = {"rad": 2 * np.pi, "deg": 360.0}
 _SPEEDS = {"m/s": 1.0, "km/h": 3.6, "kn": 1 / KNOT}
 _FAST_RAD_S = 3.5  # a vehicle that turns faster than this one time in twenty does not exist; in deg/s it is common
 _FAST_M_S = 45.0
+_COUNTS_FROM = 50.0  # a vehicle does not accelerate so much for half of the time
 _CERTAINLY = 3.0  # a value this far beyond what the other unit allows makes one likely
 
 
@@ -23,12 +24,22 @@ def acceleration_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     for unit, gravity in (("m/s^2", STANDARD_GRAVITY), ("g", 1.0), ("mg", 1000.0)):
         if 0.8 < length / gravity < 1.25:
             return unit, f"likely: its usual length {length:.4g} is gravity in {unit}"
+    if _are_counts(whole) and length > _COUNTS_FROM:
+        return "", f"a guess: whole numbers of usual length {length:.4g}: raw counts, whose scale the log does not say"
     return "m/s^2", f"a guess: in no unit is its usual length {length:.4g} gravity"
+
+
+def _are_counts(value: Float[np.ndarray, "T C"]) -> bool:
+    """Whether all are whole numbers, as a converter gives them."""
+    known = value[np.isfinite(value)]
+    return len(known) > 0 and bool((known == np.round(known)).all())
 
 
 def rate_unit(value: Float[np.ndarray, "T C"]) -> tuple[str, str]:
     """By size: vehicles do not turn at 200 deg/s for long."""
     known = value[np.isfinite(value).any(axis=1)]
+    if _are_counts(known) and len(np.unique(known)) > 2 and np.nanmax(np.abs(known)) > 1:
+        return "", "a guess: whole numbers: raw counts, whose scale the log does not say"
     fast = float(np.quantile(np.nanmax(np.abs(known), axis=1), 0.95))
     unit = "deg/s" if fast > _FAST_RAD_S else "rad/s"
     sure = "likely" if fast > _CERTAINLY * _FAST_RAD_S else "a guess"

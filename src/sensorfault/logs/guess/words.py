@@ -24,6 +24,7 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
         ("gyro", r"(^|_)(?P<axis>roll|pitch|yaw)_?(rate|speed)$"),
+        ("gyro", r"(^|_)(?P<axis>turn_?rate|ang(ular)?_?(rate|vel|velocity|speed))$"),  # of a vehicle that moves in a plane
         ("gyro", rf"(^|_)(gyros?|gyr|gyroscope|omega|twist_angular|ang(ular)?_?(rate|vel|velocity|speed)|w)_?{_AXIS}$"),
         ("accelerometer", rf"(^|_)(a|acc|accel|acceleration|accelerometer|specific_force)_?{_AXIS}$"),
         ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|magnetic_field|compass)_?{_AXIS}$"),
@@ -56,6 +57,10 @@ _CHANNEL = {
 }  # fmt: skip
 _STEM = {"bar": "baro"}  # DataFlash's BarAlt
 _GYRO_AXIS = {"roll": "x", "pitch": "y", "yaw": "z"}
+# EuRoC's names, as `w_RS_S_x`: what is measured, of which frame, in which frame, along which axis.
+_FRAMED = re.compile(r"(?P<bias>b_)?(?P<what>[wavpq])_rs(_[rs])?_(?P<axis>[wxyz])")
+_OF_FRAMED = {"w": "gyro", "a": "accelerometer", "v": "velocity", "p": "local_position", "q": "quaternion"}
+RECEIVERS = re.compile(r"(^|_)(gps|gnss)(_|$)")
 
 _OF_JOINTS = ("rad", "Nm")  # units of no axes in space, but of an arm's joints
 
@@ -64,7 +69,7 @@ _UNIT_ENDINGS = (
     ("m_s2", "m/s^2"), ("m_s_2", "m/s^2"), ("mps2", "m/s^2"), ("rad_s", "rad/s"), ("radps", "rad/s"),
     ("deg_s", "deg/s"), ("degps", "deg/s"), ("dps", "deg/s"), ("m_s", "m/s"), ("mps", "m/s"), ("km_h", "km/h"),
     ("kmh", "km/h"), ("kph", "km/h"), ("knots", "kn"), ("rad", "rad"), ("degrees", "deg"), ("deg", "deg"),
-    ("ga", "gauss"), ("meter", "m"),
+    ("ga", "gauss"), ("gauss", "gauss"), ("meter", "m"), ("meters", "m"), ("mph", "mph"), ("feet", "ft"), ("ut", "uT"),
     ("hpa", "hPa"), ("kpa", "kPa"), ("pa", "Pa"), ("celsius", "degC"), ("degc", "degC"),
     ("mm", "mm"), ("ft", "ft"),
 )  # fmt: skip
@@ -93,7 +98,27 @@ def read_name(column: str, unit: str = "", others: Collection[str] = ()) -> Mean
             return axis
     plain, bracket = _split_unit(column)
     bare, ending = _without_unit("_".join(_tokens(plain)) or re.sub(r"\W+", "_", column).lower())
-    return _read(bare, unit or bracket or ending)
+    return _beside(bare, unit or bracket or ending, others) or _read(bare, unit or bracket or ending)
+
+
+def _beside(bare: str, unit: str, others: Collection[str]) -> Meaning | None:
+    """What a short name means beside the names of the others; None if they say no more than it does."""
+    framed = _FRAMED.fullmatch(bare)
+    if framed:
+        kind = _OF_FRAMED[framed["what"]]
+        return Meaning("quality", bare, "", unit) if framed["bias"] else Meaning(kind, framed["axis"], "", unit)
+    if len(bare) > 5:
+        return None
+    names = {"_".join(_tokens(_split_unit(other)[0])) for other in others}
+    if re.fullmatch(r"g_?[xyz]", bare) and {bare.replace("g", "a", 1), bare.replace("g", "acc", 1)} & names:
+        return Meaning("gyro", bare[-1], "", unit)
+    if re.fullmatch(r"t[xyz]", bare) and {"qx", "qy", "qz", "qw"} <= names:
+        return Meaning("local_position", bare[-1], "", unit)
+    if bare in ("w", "x", "y", "z") and {"w", "x", "y", "z"} <= names:
+        return Meaning("quaternion", bare, "", unit)
+    if bare == "theta" and {"x", "y"} <= names:
+        return Meaning("heading", "heading", "", unit)
+    return None
 
 
 def _without_unit(name: str) -> tuple[str, str]:
@@ -112,15 +137,26 @@ def _read(bare: str, unit: str) -> Meaning:
         if match and (kind == "quaternion" or not _QUALITY.search(bare)):
             groups = match.groupdict()
             axis = groups.get("axis") or groups.get("alone") or kind
-            rate = unit + "/s" if kind == "gyro" and unit in ("rad", "deg") else unit  # PX4 calls rad/s rad
-            return Meaning(kind, _channel(kind, axis), _stem(bare, match), rate)
+            stem = _stem(bare, match)
+            if kind == "heading" and axis == "heading" and RECEIVERS.search(stem):
+                axis = "course"  # a receiver knows where it goes, not where a nose points
+            return Meaning(kind, _channel(kind, axis), stem, _sensible(kind, unit))
     if _QUALITY.search(bare):
         return Meaning("quality", bare, "", unit)
     return Meaning(*_by_unit(bare, unit), unit)
 
 
+def _sensible(kind: str, unit: str) -> str:
+    """The unit that is meant: PX4 calls rad/s rad, and G is gravity where it is no field."""
+    if kind == "gyro" and unit in ("rad", "deg"):
+        return f"{unit}/s"
+    return {"gauss": "g", "mgauss": "mg"}.get(unit, unit) if kind == "accelerometer" else unit
+
+
 def _channel(kind: str, axis: str) -> str:
-    return _GYRO_AXIS.get(axis, axis) if kind == "gyro" else _CHANNEL.get(axis, axis)
+    if kind == "gyro":
+        return _GYRO_AXIS.get(axis, "z" if re.search("rate|vel|speed", axis) else axis)
+    return _CHANNEL.get(axis, axis)
 
 
 def _stem(name: str, match: re.Match[str]) -> str:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from sensorfault.logs.readers.mat_load import columns_of
 from sensorfault.logs.readers.subprocess_reader import Loaded, reason
 
 _NUMBERS = ("double", "single", "logical", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
@@ -45,7 +46,7 @@ def _members(group: Any, path: str, lost: list[list[str]]) -> Iterator[tuple[str
 
 
 def _vector(name: str, dataset: Any, path: str, lost: list[list[str]]) -> dict[str, np.ndarray]:
-    """The dataset by its name, if it is a vector of numbers."""
+    """The dataset by its name, if it is a vector of numbers; of a matrix its columns."""
     try:
         kind = _class(dataset)
         if kind not in _NUMBERS or "MATLAB_empty" in dataset.attrs or dataset.external or dataset.is_virtual:
@@ -54,7 +55,7 @@ def _vector(name: str, dataset: Any, path: str, lost: list[list[str]]) -> dict[s
     except Exception as error:
         lost.append([path, reason(error)])
         return {}
-    return {name: value} if value.ndim == 1 and value.dtype.kind in "biuf" else {}
+    return columns_of(name, value) if value.dtype.kind in "biuf" else {}
 
 
 def _class(one: Any) -> str:

@@ -4,6 +4,7 @@ import logging
 import os
 import warnings
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ def load(path: str, part: int | None = None) -> Loaded:
     """The groups with two rows or more and numbers in them, on Unix time.
 
     In the second result: "units" of each group, "others": how many channels are not numbers, "lost": why groups cannot
-    be read, "parts": the number of time intervals with about PART numbers each. `part`: one of them, or all.
+    be read, "parts": the number of time intervals with about PART numbers each, "frames": whether it holds frames of a
+    bus that were not decoded. `part`: one of the intervals, or all.
 
     Raises:
         Exception: of any kind, if the file is damaged.
@@ -29,6 +31,7 @@ def load(path: str, part: int | None = None) -> Loaded:
     groups: dict[str, dict[str, np.ndarray]] = {}
     lost = [] if part is None else file.cut()
     result: dict[str, Any] = {"units": {}, "others": 0, "lost": lost, "parts": file.parts}
+    result["frames"] = _has_frames(file.file)
     for index, name in file.names.items():
         try:
             columns, units, others = file.group(index, *file.rows(index, part))
@@ -127,11 +130,20 @@ class _File:
 
 
 def _mdf(path: str) -> Any:
+    """The file; frames of a CAN bus in it are decoded by the databases beside it."""
     logging.disable()
     warnings.simplefilter("ignore")
     from asammdf import MDF  # lazily: a second that only this format needs
 
-    return MDF(path)
+    file = MDF(path)
+    databases = sorted(str(one) for one in Path(path).parent.glob("*.dbc"))
+    if not _has_frames(file) or not databases:
+        return file
+    return file.extract_bus_logging(database_files={"CAN": [(one, 0) for one in databases]})
+
+
+def _has_frames(file: Any) -> bool:
+    return bool(getattr(file, "bus_logging_map", {}).get("CAN"))
 
 
 def _name(group: Any, index: int, taken: dict[int, str]) -> str:

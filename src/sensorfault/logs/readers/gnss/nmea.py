@@ -17,6 +17,10 @@ _NAMES = ("latitude", "longitude", "altitude", "speed", "course")
 _NO_DATE = date(1970, 1, 1)
 _DAY_S, _HALF_DAY_S = 86_400.0, 43_200.0
 _TELL_EVERY = 10_000
+# A sentence may stand behind a stamp, or between commas; behind its check sum it is over.
+_SENTENCE = re.compile(rb"\$[A-Z]{2}(?:GGA|RMC),[^*\r\n]*(?:\*[0-9A-Fa-f]{2})?")
+_ANY = re.compile(rb"\$[A-Z]{5},")
+_Sentence = tuple[time, date | None, dict[str, float]]
 
 
 def read_nmea(path: Path, ask: Ask) -> Tables:
@@ -25,43 +29,58 @@ def read_nmea(path: Path, ask: Ask) -> Tables:
     Raises:
         LogError: no sentence GGA or RMC in it that can be read.
     """
-    from pynmeagps import NMEAReader  # lazily: only this format needs it
-
+    heard, spoilt = _sentences(path, ask)
+    first = next((day for _, day, found in heard if day is not None), None)
     rows: dict[float, dict[str, float]] = {}
-    spoilt: list[int] = []
-    day, dated, last = _NO_DATE, False, 0.0
-    lines = path.read_bytes().splitlines()
-    for number, line in enumerate(lines, 1):
-        if number % _TELL_EVERY == 0:
-            ask.tell(number / len(lines))
-        if line[:1] != b"$" or line[3:6] not in (b"GGA", b"RMC"):
-            continue
-        try:
-            message = NMEAReader.parse(line + b"\r\n")
-            at, told_day = message.time, getattr(message, "date", None)
-            if isinstance(told_day, date):
-                day, dated = told_day, True
-            if not isinstance(at, time):
-                continue
-            found = _values(message)
-        except Exception:  # a damaged sentence fails in as many ways as it can be damaged
-            spoilt.append(number)
-            continue
+    day, last, fixed = first or _NO_DATE, 0.0, False
+    for at, dated, found in heard:
+        fixed |= bool(found)
+        if not fixed:
+            continue  # before its first fix a receiver does not know the time
+        day = dated or day
         moment = datetime.combine(day, at, UTC).timestamp()
-        while not dated and moment < last - _HALF_DAY_S:
+        while first is None and moment < last - _HALF_DAY_S:
             moment += _DAY_S  # midnight
         last = moment
         rows.setdefault(moment, {}).update(found)
     if not rows:
-        raise LogError(f"{path}: no sentence GGA or RMC in it that can be read; let the receiver log them.")
+        raise LogError(f"{path}: no sentence GGA or RMC with a fix in it that can be read; let the receiver log them.")
     damage = []
     if spoilt:
         what = f"{len(spoilt)} sentences are damaged, the first"
         damage.append(Damage(what, f"line {spoilt[0]}", "all the others were read"))
-    times = [moment for moment in rows if not dated or moment > _DAY_S]
+    times = list(rows)
     table = {name: np.array([rows[moment].get(name, np.nan) for moment in times]) for name in _NAMES}
-    notes = () if dated else (f"{path.name}: there is no RMC sentence with a date; the time counts from midnight.",)
+    notes = () if first is not None else (f"{path.name}: there is no RMC sentence with a date; the time counts from midnight.",)
     return with_notes({"": gnss_table(path, {"time": np.array(times), **table})}, notes, damage)
+
+
+def _sentences(path: Path, ask: Ask) -> tuple[list[_Sentence], list[int]]:
+    """The time of day, the date and the values of each sentence, and the numbers of the lines that are damaged.
+
+    Only a receiver with a fix knows the date.
+    """
+    from pynmeagps import NMEAReader  # lazily: only this format needs it
+
+    heard: list[_Sentence] = []
+    spoilt: list[int] = []
+    lines = path.read_bytes().splitlines()
+    for number, line in enumerate(lines, 1):
+        if number % _TELL_EVERY == 0:
+            ask.tell(number / len(lines))
+        match = _SENTENCE.search(line)
+        if match is None:
+            continue
+        try:
+            message = NMEAReader.parse(match[0].strip() + b"\r\n")
+            found = _values(message)
+        except Exception:  # a damaged sentence fails in as many ways as it can be damaged
+            spoilt.append(number)
+            continue
+        day = getattr(message, "date", None) if found else None
+        if isinstance(message.time, time):
+            heard.append((message.time, day if isinstance(day, date) else None, found))
+    return heard, spoilt
 
 
 def _values(message: Any) -> dict[str, float]:
@@ -81,9 +100,8 @@ def _values(message: Any) -> dict[str, float]:
 
 
 def looks_nmea(head: bytes) -> bool:
-    """Whether a file that begins so is one: its first whole lines are sentences."""
-    lines = head.splitlines()[:-1]
-    return any(re.match(rb"\$[A-Z]{5},", line) for line in lines[:10])
+    """Whether a file that begins so is one: it has sentences, and no message of u-blox's own."""
+    return _ANY.search(head) is not None and b"\xb5\x62" not in head
 
 
-FORMAT = Format("NMEA", ("*.nmea", "*.txt", "*.log"), remembering(read_nmea), looks_nmea)
+FORMAT = Format("NMEA", ("*.nmea", "*.txt", "*.log", "*.ubx"), remembering(read_nmea), looks_nmea)
