@@ -6,10 +6,24 @@ from pathlib import Path
 import can
 import cantools
 import numpy as np
-from asammdf import MDF, Signal
+from asammdf import MDF, Signal, Source
 
 START_S = 1_700_000_000.0
 ROWS = 60
+TRUCK = """VERSION ""
+NS_ :
+BS_:
+BU_: ECU
+BO_ 2364540158 EEC1: 8 ECU
+ SG_ EngineSpeed : 24|16@1+ (0.125,0) [0|8031] "rpm" ECU
+ SG_ Count : 40|8@1+ (1,0) [0|250] "" ECU
+BA_DEF_ "ProtocolType" STRING;
+BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG";
+BA_DEF_DEF_ "ProtocolType" "";
+BA_DEF_DEF_ "VFrameFormat" "J1939PG";
+BA_ "ProtocolType" "J1939";
+BA_ "VFrameFormat" BO_ 2364540158 3;
+"""
 DATABASE = """VERSION ""
 NS_ :
 BS_:
@@ -60,6 +74,45 @@ def asc(path: Path, count: int = ROWS) -> Path:
     with can.ASCWriter(path) as writer:
         for frame in frames(count):
             writer.on_message_received(frame)
+    return path
+
+
+def candump(path: Path, count: int = ROWS) -> Path:
+    _database(path)
+    with can.CanutilsLogWriter(path) as writer:
+        for frame in frames(count):
+            writer.on_message_received(frame)
+    return path
+
+
+def framed(path: Path, count: int = ROWS) -> Path:
+    """The frames as a bus logger writes them to MDF, undecoded."""
+    _database(path)
+    sent = list(frames(count))
+    shapes = {"BusChannel": "u1", "ID": "u4", "IDE": "u1", "DLC": "u1", "DataLength": "u1", "DataBytes": "(8,)u1"}
+    rows = np.zeros(len(sent), [(f"CAN_DataFrame.{name}", shape) for name, shape in shapes.items()])
+    rows["CAN_DataFrame.BusChannel"] = 1
+    rows["CAN_DataFrame.ID"] = [frame.arbitration_id for frame in sent]
+    rows["CAN_DataFrame.DLC"] = rows["CAN_DataFrame.DataLength"] = 8
+    rows["CAN_DataFrame.DataBytes"] = [list(frame.data.ljust(8, b"\0")) for frame in sent]
+    source = Source("CAN1", "CAN1", "", source_type=Source.SOURCE_BUS, bus_type=Source.BUS_TYPE_CAN)
+    with MDF(version="4.11") as file:
+        time = np.array([frame.timestamp - START_S for frame in sent])
+        file.append([Signal(rows, time, name="CAN_DataFrame", source=source)], acq_source=source, acq_name="CAN1")
+        file.groups[0].channel_group.flags |= 6  # a group of bus events
+        file.save(path, overwrite=True)
+    return path
+
+
+def truck(path: Path, count: int = ROWS) -> Path:
+    """A bus of SAE J1939: the database has a source of its own, the frames another."""
+    path.with_name("truck.dbc").write_text(TRUCK)
+    with can.BLFWriter(path) as writer:
+        for k in range(count):
+            data = bytes([0, 0, 0, *int(800 / 0.125).to_bytes(2, "little"), k % 250, 0, 0])
+            writer.on_message_received(
+                can.Message(timestamp=START_S + k / 50, arbitration_id=0x0CF00400, data=data, is_extended_id=True)
+            )
     return path
 
 

@@ -25,12 +25,12 @@ def files_of(path: Where) -> list[Path]:
             raise LogError("no file was named; name a file, a folder or several files of one drive.")
     elif Path(path).is_dir():
         from sensorfault.logs.readers.formats import format_of  # lazily: the readers need polars
-        from sensorfault.logs.readers.registry import suffixes
 
-        inside = ((file, format_of(file)) for file in Path(path).iterdir() if file.is_file())
-        files = sorted({form.leader(file) for file, form in inside if form is not None})
+        inside = [file for file in Path(path).iterdir() if file.is_file()] + laid_out(Path(path))
+        known = ((file, format_of(file)) for file in inside)
+        files = sorted({form.leader(file) for file, form in known if form is not None})
         if not files:
-            raise LogError(f"{path}: no file in this folder can be read; put one of {', '.join(suffixes())} there.")
+            raise LogError(f"{path}: no file in this folder can be read{_drives_in(Path(path))}.")
     else:
         files = [Path(path)]
     for file in files:
@@ -39,6 +39,38 @@ def files_of(path: Where) -> list[Path]:
         if reason := no_input(file):
             raise LogError(f"{shown(file)} {reason}; give a log file.")
     return files
+
+
+# Where the files of known collections lie in the folder of a drive: EuRoC and ASL, KITTI, comma2k19.
+_LAYOUTS = ("mav0/*/data.csv", "*/data.csv", "oxts/timestamps.txt", "processed_log/*/*/value", "*/*/value")
+
+
+def laid_out(folder: Path) -> list[Path]:
+    """The files of a drive in subfolders, where these have the names that a known collection gives them."""
+    return next((found for layout in _LAYOUTS if (found := sorted(folder.glob(layout)))), [])
+
+
+def entry_path(file: Path) -> str:
+    """What a vehicle.toml calls a file: its name, with its folder's where all files are called alike."""
+    return f"{file.parent.name}/{file.name}" if file.name in ALIKE else file.name
+
+
+ALIKE = frozenset({"data.csv", "value"})  # names that say nothing: the folder's does
+
+
+def _drives_in(folder: Path) -> str:
+    """What else a folder without a log has."""
+    from sensorfault.logs.readers.formats import format_of
+    from sensorfault.logs.readers.registry import suffixes
+
+    inside = sorted(one for one in folder.iterdir() if one.is_dir())[:_LOOKED]
+    drives = [one.name for one in inside if laid_out(one) or any(map(format_of, filter(Path.is_file, one.iterdir())))]
+    if drives:
+        return f", but its folders {', '.join(drives[:_SHOWN])} hold logs; name one of them"
+    return f"; put one of {', '.join(suffixes())} there"
+
+
+_LOOKED, _SHOWN = 100, 8  # folders
 
 
 def shown(path: Path) -> str:
@@ -88,7 +120,14 @@ def called_after(vehicle: VehicleFile, path: Where) -> VehicleFile:
 def named_after(vehicle: VehicleFile, path: Where) -> VehicleFile:
     """The description under the name of the log's file, or of its folder where it has several."""
     files = files_of(path)
-    return replace(vehicle, name=files[0].stem if len(files) == 1 else files[0].absolute().parent.stem)
+    return replace(vehicle, name=log_name(path, files))
+
+
+def log_name(path: Where, files: Sequence[Path]) -> str:
+    """What a log is called: after its file; after its folder where it has several, or a file in a subfolder."""
+    if isinstance(path, str | Path) and Path(path).is_dir() and files[0].parent != Path(path):
+        return Path(path).absolute().stem
+    return files[0].stem if len(files) == 1 else files[0].absolute().parent.stem
 
 
 def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]]:
@@ -109,7 +148,8 @@ def pair_files(vehicle: VehicleFile, path: Where) -> list[tuple[FileEntry, Path]
             raise LogError(
                 f'{vehicle.name}: [file.{entry.name}] has no path, but the log is of several files; write path = "...".'
             )
-        match = [file for file in files if file.name == Path(entry.path).name]
+        called = entry_path(Path(entry.path))
+        match = [file for file in files if entry_path(file) == called]
         if not match:
             listed = ", ".join(file.name for file in files)
             raise LogError(

@@ -14,4 +14,12 @@ def npy(folder: Path) -> Path:
     return path
 
 
-SMALL = {"NumPy arrays": npy}
+def value(folder: Path) -> Path:
+    for name, array in (("t", TIME), ("value", np.column_stack([COLUMNS[name] for name in ("ax", "ay", "az")]))):
+        (folder / "accelerometer").mkdir(exist_ok=True)
+        with (folder / "accelerometer" / name).open("wb") as file:
+            np.save(file, array)
+    return folder / "accelerometer" / "value"
+
+
+SMALL = {"NumPy arrays": npy, "comma2k19": value}

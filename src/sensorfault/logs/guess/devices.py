@@ -13,7 +13,7 @@ from sensorfault.logs.guess.words import read_name
 from sensorfault.logs.held import changes, fresh_rows, looks_held, repeats, share_old, usual_period_s
 from sensorfault.logs.readers.source import Source
 
-_DEVICES = (  # name, the part that leads, the parts that may come with it
+_DEVICES: tuple[tuple[str, str, tuple[str, ...]], ...] = (  # name, the part that leads, the parts that may come with it
     ("gnss", "gnss_position", ("gnss_speed", "gnss_velocity", "gnss_course", "gnss_height")),
     ("attitude", "attitude", ("heading",)),
 )

@@ -12,6 +12,7 @@ from sensorfault.logs.guess.columns import measurements
 from sensorfault.logs.guess.naming import stem_of
 from sensorfault.logs.guess.sensors import guess_sensors
 from sensorfault.logs.guess.time import guess_time
+from sensorfault.logs.place import entry_path
 from sensorfault.logs.readers.beginning import is_long, read_beginning
 from sensorfault.logs.readers.formats import read_tables
 from sensorfault.logs.readers.source import Ask, Source, Tables
@@ -37,7 +38,8 @@ class Guess:
     @property
     def called(self) -> str:
         """Its name in messages: its file, and its table where the file holds several."""
-        return f"{self.path.name} ({self.file.table})" if self.file.table else self.path.name
+        name = entry_path(self.path)
+        return f"{name} ({self.file.table})" if self.file.table else name
 
     @property
     def measures(self) -> bool:
@@ -138,7 +140,9 @@ def guess_table(source: Source, table: str | None, rate_hz: float | None = None)
     sensors, left_out = _sensors(head, timed.time, clock)
     tag = path.with_name(path.name + ".tag")
     has_tag = tag.is_file() and not clock.is_unix
-    file = replace(timed, path=path.name, tag=tag.name if has_tag else None, table=table, left_out=tuple(left_out))
+    file = replace(
+        timed, path=entry_path(path), tag=tag.name if has_tag else None, table=table, left_out=tuple(left_out)
+    )
     return Guess(path, tuple(source.frame.columns), file, clock, sensors, times=source.times)
 
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from sensorfault.logs.place import ALIKE
 from sensorfault.logs.readers.npy import name_of
 
 
@@ -13,7 +14,9 @@ def joined(file: str, sensor: str) -> str:
 
 
 def stem_of(path: Path) -> str:
-    """A file's name; of arrays, what they measure."""
+    """A file's name; of arrays, what they measure; the folder's where the file's says nothing."""
+    if path.name in ALIKE:
+        return path.parent.name
     return name_of(path).split("__")[-1] if path.suffix.lower() == ".npy" else path.stem
 
 

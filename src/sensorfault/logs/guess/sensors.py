@@ -29,6 +29,7 @@ _USUAL_UNIT = {
     "barometer": "hPa",
 }  # fmt: skip
 _FROM_GNSS = ("speed", "velocity", "position", "height")  # and a heading that is a course
+_ANGLES = ("attitude", "heading")  # of one device they have one unit
 _COURSES = ("course", "heading", "track")
 _ROWS_OF_A_UNIT = 50_000  # as many show the size of a sensor's values
 _NO_VALUE = -1.0  # a usual mark for "no value" among lengths and the like
@@ -74,9 +75,10 @@ def _part(column: Column, columns: Sequence[Column], has_position: bool) -> str:
 
 def _sensor(device: Device, clock: Clock, place_rad: np.ndarray | None) -> SensorEntry:
     group = _some(np.column_stack([column.value for column in device.columns]))
+    angles = np.column_stack([column.value for column in device.columns if _kind(column) in _ANGLES] or [group])
     channels, seen = [], set()
     for column in device.columns:
-        unit, why = _unit(column, group, clock, place_rad)
+        unit, why = _unit(column, angles if _kind(column) in _ANGLES else group, clock, place_rad)
         name = re.sub(r"\W+", "_", column.meaning.axis if column.meaning.axis not in seen else column.name)
         seen.add(name)
         blind = _blind(column)
@@ -118,7 +120,7 @@ def _unit(column: Column, group: np.ndarray, clock: Clock, place_rad: np.ndarray
         case "gyro":
             return units.rate_unit(group)
         case "attitude" | "heading" | "steering":
-            return units.angle_unit(value)
+            return units.angle_unit(group.ravel())
         case "position":
             return units.position_unit(value)
         case "height":

@@ -10,7 +10,7 @@ from sensorfault.logs.guess.columns import OTHER_TIME, QUALITY
 from sensorfault.logs.guess.exported import topics_of
 from sensorfault.logs.guess.look import Guess, guess_table, look_at, look_at_topics
 from sensorfault.logs.guess.naming import joined, short_names, stem_of
-from sensorfault.logs.place import Where, files_of
+from sensorfault.logs.place import Where, files_of, log_name
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
 from sensorfault.logs.vehicle import VehicleFile, with_rate
@@ -48,7 +48,7 @@ def guess_files(path: Where, tell: Callable[[float], None], rate_hz: float | Non
         for sensor in one.sensors
     ]
     entries = [replace(one.file, name=name) for one, name in zip(guesses, names, strict=True)]
-    name = stem_of(files[0]) if len(files) == 1 else files[0].absolute().parent.stem
+    name = stem_of(files[0]) if len(files) == 1 and files[0] == path else log_name(path, files)
     said = (*notes, *raw, *_untied(guesses), *_missed(guesses))
     found = VehicleFile(name, tuple(entries), tuple(sensors), notes=said, where="a guess", guessed=True)
     return found if rate_hz is None else with_rate(found, rate_hz)

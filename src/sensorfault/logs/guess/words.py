@@ -24,7 +24,10 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
         ("gyro", r"(^|_)(?P<axis>roll|pitch|yaw)_?(rate|speed)$"),
-        ("gyro", r"(^|_)(?P<axis>turn_?rate|ang(ular)?_?(rate|vel|velocity|speed))$"),  # of a vehicle that moves in a plane
+        (
+            "gyro",
+            r"(^|_)(?P<axis>turn_?rate|ang(ular)?_?(rate|vel|velocity|speed))$",
+        ),  # in a plane
         ("gyro", rf"(^|_)(gyros?|gyr|gyroscope|omega|twist_angular|ang(ular)?_?(rate|vel|velocity|speed)|w)_?{_AXIS}$"),
         ("accelerometer", rf"(^|_)(a|acc|accel|acceleration|accelerometer|specific_force)_?{_AXIS}$"),
         ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|magnetic_field|compass)_?{_AXIS}$"),

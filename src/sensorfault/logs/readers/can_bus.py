@@ -1,5 +1,9 @@
-"""Recordings of a CAN bus (`.blf`, `.asc`), by python-can, decoded by the `.dbc` files beside them, by cantools."""
+"""Recordings of a CAN bus (`.blf`, `.asc`, `.trc`, candump's `.log`), by python-can.
 
+The `.dbc` files beside them decode them, by cantools.
+"""
+
+import re
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -16,6 +20,8 @@ from sensorfault.logs.readers.source import PART, Ask, Damage, Tables, with_note
 from sensorfault.logs.readers.subprocess_reader import reason
 from sensorfault.logs.readers.telling import TellingFile, open_telling
 from sensorfault.logs.table import LogError
+
+_READERS = {".blf": "BLFReader", ".asc": "ASCReader", ".trc": "TRCReader", ".log": "CanutilsLogReader"}  # of python-can
 
 
 def read_can(path: Path, ask: Ask) -> Tables:
@@ -61,7 +67,7 @@ def _frames(path: Path, can: Any, tell: Callable[[float], None], damage: list[Da
     read, last = 0, 0.0
     try:
         with _opened(path, tell) as file:
-            for frame in (can.ASCReader if _is_text(path) else can.BLFReader)(file):
+            for frame in getattr(can, _READERS[path.suffix.lower()])(file):
                 if not (frame.is_error_frame or frame.is_remote_frame):
                     read, last = read + 1, frame.timestamp
                     yield frame
@@ -73,13 +79,17 @@ def _frames(path: Path, can: Any, tell: Callable[[float], None], damage: list[Da
         damage.append(Damage(f"the recording breaks off ({reason(error)})", f"frame {read}, {last:.3f} s"))
 
 
-def _is_text(path: Path) -> bool:
-    return path.suffix.lower() == ".asc"
-
-
 def _opened(path: Path, tell: Callable[[float], None]) -> TextIOWrapper | TellingFile:
     """The file; readers that fail at its head would leave it open."""
-    return TextIOWrapper(open_telling(path, tell), "utf-8", "replace") if _is_text(path) else TellingFile(path, tell)
+    if path.suffix.lower() == ".blf":
+        return TellingFile(path, tell)
+    return TextIOWrapper(open_telling(path, tell), "utf-8", "replace")
+
+
+def _group(number: int) -> int:
+    """The parameter group of an identifier of 29 bits (SAE J1939-21): without priority, source and destination."""
+    group = number >> 8 & 0x3FFFF
+    return group if group >> 8 & 0xFF >= 0xF0 else group & 0x3FF00
 
 
 class _Decoding:
@@ -87,15 +97,16 @@ class _Decoding:
 
     def __init__(self, path: Path, database: Any, handing: Handing, hand_on: Callable[[Tables], None]) -> None:
         self.path, self.database = path, database
+        of_trucks = [one for one in database.messages if one.protocol == "j1939"]
+        self._groups = {_group(one.frame_id): one for one in of_trucks}
         self.rows = Rows()
         self._hand_on = hand_on if handing.asked else None
         self._unknown: Counter[int] = Counter()
         self._spoilt = 0
 
     def take(self, frame: Any) -> None:
-        try:
-            message = self.database.get_message_by_frame_id(frame.arbitration_id)
-        except KeyError:
+        message = self._message(frame)
+        if message is None:
             self._unknown[frame.arbitration_id] += 1
             return
         try:
@@ -107,6 +118,13 @@ class _Decoding:
         if self._hand_on is not None and self.rows.numbers >= PART:
             self._hand_on(self.rows.tables(self.path, least=1))
             self.rows = Rows()
+
+    def _message(self, frame: Any) -> Any:
+        """What describes a frame: by its number, or by what it carries where that is SAE J1939, from any source."""
+        try:
+            return self.database.get_message_by_frame_id(frame.arbitration_id)
+        except KeyError:
+            return self._groups.get(_group(frame.arbitration_id)) if frame.is_extended_id else None
 
     def unknown_said(self) -> list[str]:
         if not self._unknown:
@@ -121,4 +139,12 @@ class _Decoding:
         return [Damage(f"{counted(self._spoilt, 'frame')} cannot be decoded", "other places", "they were left out")]
 
 
-FORMAT = Format("CAN recording", ("*.blf", "*.asc"), remembering(read_can), parts=True)
+def looks_candump(head: bytes) -> bool:
+    """Whether a file begins with frames as candump writes them: (time) bus id#data."""
+    return re.match(rb"\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]+##?[0-9A-Fa-fR]*", head) is not None
+
+
+FORMATS = (
+    Format("CAN recording", ("*.blf", "*.asc", "*.trc"), remembering(read_can), parts=True),
+    Format("candump", ("*.log",), remembering(read_can), looks_candump, parts=True),
+)

@@ -43,8 +43,12 @@ def read_dataflash_text(path: Path, ask: Ask) -> Tables:
     tables = handing.rest(tables)
     if not tables and ask.tables is None:
         named = "no messages with a time in this DataFlash log"
-        what = named if messages.names else "this is not a DataFlash log (no FMT line)"
-        raise LogError(f"{path}: {what}; name a .log file of a whole flight.")
+        if messages.names:
+            raise LogError(f"{path}: {named}; name a .log file of a whole flight.")
+        raise LogError(
+            f"{path}: this .log is none of a flight (no FMT line), of a receiver (no NMEA sentence) or of a CAN bus "
+            "(candump); give one of these, or a table as .csv."
+        )
     return with_notes(tables, messages.notes(), messages.damage())
 
 

@@ -1,6 +1,8 @@
-"""Files packed by gzip: unpacked to a temporary folder and read as their own format."""
+"""Files packed by gzip, or alone in a zip: unpacked to a temporary folder and read as their own format."""
 
+import re
 import tempfile
+import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,19 +12,35 @@ from pathlib import Path
 from sensorfault.logs.readers.source import Damage, Source, Tables, with_notes
 from sensorfault.logs.table import LogError
 
-SUFFIX = ".gz"
+SUFFIX, ZIP = ".gz", ".zip"
 _CHUNK = 1 << 16
+_EXTRA = re.compile(r"__MACOSX/|.*\.DS_Store$")  # what a system adds by itself
 _GZIP = 31  # zlib's number for 32 kB of window and gzip's own head and tail
 
 
 def is_packed(path: Path) -> bool:
-    """Whether its name says so."""
-    return path.suffix.lower() == SUFFIX
+    """Whether its name says so; a zip must hold one file only."""
+    return path.suffix.lower() == SUFFIX or _alone(path) is not None
 
 
 def inner(path: Path) -> Path:
     """What a file is called when it is unpacked."""
-    return path.with_suffix("") if is_packed(path) else path
+    if path.suffix.lower() == SUFFIX:
+        return path.with_suffix("")
+    alone = _alone(path)
+    return path.with_name(Path(alone).name) if alone is not None else path
+
+
+def _alone(path: Path) -> str | None:
+    """The only file in a zip; None if it is no zip, or holds several."""
+    if path.suffix.lower() != ZIP or not path.is_file():
+        return None
+    try:
+        with zipfile.ZipFile(path) as packed:
+            names = [one.filename for one in packed.infolist() if not one.is_dir() and not _EXTRA.match(one.filename)]
+    except (zipfile.BadZipFile, OSError):
+        return None
+    return names[0] if len(names) == 1 else None
 
 
 def head_of(path: Path, size: int) -> bytes:
@@ -47,7 +65,7 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
         with file.open("wb") as plain:
             whole = _unpack(path, plain)
             if not plain.tell():
-                raise LogError(f"{path}: this file cannot be unpacked; pack the log again with gzip.")
+                raise LogError(f"{path}: this file cannot be unpacked; pack the log again.")
             if not whole:
                 damage.append(Damage("the packed file is damaged or breaks off", f"unpacked byte {plain.tell()}"))
         try:
@@ -68,6 +86,8 @@ def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:
 
     Python's own gzip gives nothing of the block in which the damage is.
     """
+    if path.suffix.lower() == ZIP:
+        return _unzip(path, plain, most)
     with path.open("rb") as packed:
         unpacker = zlib.decompressobj(_GZIP)
         while chunk := packed.read(_CHUNK):
@@ -84,6 +104,20 @@ def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:
             if most is not None and plain.tell() >= most:
                 return True
         return unpacker.eof
+
+
+def _unzip(path: Path, plain: BufferedIOBase, most: int | None) -> bool:
+    name = _alone(path)
+    assert name is not None
+    try:
+        with zipfile.ZipFile(path) as packed, packed.open(name) as file:
+            while chunk := file.read(_CHUNK):
+                plain.write(chunk)
+                if most is not None and plain.tell() >= most:
+                    break
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError):  # damaged, or encrypted
+        return False
+    return True
 
 
 def _byte_by_byte(unpacker: "zlib._Decompress", chunk: bytes, plain: BufferedIOBase) -> None:

@@ -32,7 +32,7 @@ def read_mdf(path: Path, ask: Ask) -> Tables:
         raise LogError(f"{path}: not a whole MDF file ({error}); export it again.") from None
     if loaded.result["frames"]:
         raise LogError(
-            f"{path}: it holds frames of a CAN bus, and there is no .dbc file beside it that describes them; put one there."
+            f"{path}: it holds frames of a CAN bus, and no .dbc file beside it describes them; put one there."
         )
     damage, others = _lost(loaded), loaded.result["others"]
     parts = loaded.result["parts"] if handing.asked else 1

@@ -37,21 +37,26 @@ def read_npy(path: Path) -> Source:
     if not values:
         name = name_of(path)
         raise LogError(f"{path}: there are no values beside these times; save them as {name}__value.npy.")
+    return _joined(path, {_word(file, path, len(values)): file for file in values}, path.stem)
+
+
+def _joined(path: Path, values: dict[str, Path], clock: str) -> Source:
+    """One table of the times in a file, and the values in others, by what they measure."""
     time = _array(path)
     if time.ndim != 1:
         raise LogError(f"{path}: times of shape {time.shape}; save one time a row, in seconds.")
-    columns = {path.stem: time}
-    for file in values:
+    columns = {clock: time}
+    for word, file in values.items():
         value = _array(file)
         if value.ndim not in (1, 2):
             raise LogError(f"{file}: an array of {value.ndim} axes is not a table; save rows, or rows and columns.")
         if len(value) != len(time):
             raise LogError(f"{file}: {len(value)} rows, but {path.name} has {len(time)}; save one row for each time.")
         width = None if value.ndim == 1 else value.shape[1]
-        for i, name in enumerate(columns_of(_word(file, path, len(values)), width, alone=len(values) == 1)):
+        for i, name in enumerate(columns_of(word, width, alone=len(values) == 1)):
             columns[name] = value if value.ndim == 1 else value[:, i]
     frame = pl.DataFrame({name: pl.Series(name, native(column), nan_to_null=False) for name, column in columns.items()})
-    return Source(path, frame, time=path.stem)
+    return Source(path if clock != "time" else next(iter(values.values())), frame, time=clock)
 
 
 def called_by(path: Path) -> Path:
@@ -105,4 +110,19 @@ def _array(path: Path) -> np.ndarray:
     return array
 
 
-FORMAT = Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by)
+def read_value(path: Path) -> Source:
+    """comma2k19's own layout: a folder for each quantity, with the arrays `t` and `value`.
+
+    Raises:
+        LogError: as `read_npy`.
+    """
+    times = path.with_name("t")
+    if not times.is_file():
+        raise LogError(f"{path}: there is no file 't' with the times beside these values; copy both.")
+    return _joined(times, {path.parent.name: path}, "time")
+
+
+FORMATS = (
+    Format("NumPy arrays", ("*.npy",), one_table(read_npy), leader=called_by),
+    Format("comma2k19", ("value",), one_table(read_value)),
+)

@@ -51,7 +51,11 @@ def read_nmea(path: Path, ask: Ask) -> Tables:
         damage.append(Damage(what, f"line {spoilt[0]}", "all the others were read"))
     times = list(rows)
     table = {name: np.array([rows[moment].get(name, np.nan) for moment in times]) for name in _NAMES}
-    notes = () if first is not None else (f"{path.name}: there is no RMC sentence with a date; the time counts from midnight.",)
+    notes = (
+        ()
+        if first is not None
+        else (f"{path.name}: there is no RMC sentence with a date; the time counts from midnight.",)
+    )
     return with_notes({"": gnss_table(path, {"time": np.array(times), **table})}, notes, damage)
 
 
