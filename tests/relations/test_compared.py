@@ -197,3 +197,13 @@ def test_what_is_said_and_samples_of_a_second_unit_are_no_witnesses() -> None:
         "magnetometer2_uncalibrated",
     }
     assert not found.watched[[c.path for c in wide.channels].index("gnss.fix_type")]
+
+
+def test_a_receiver_that_has_not_begun_is_unknown_not_frozen() -> None:
+    early = drives.car(seed=3)
+    for path in ("gnss.latitude", "gnss.longitude", "gnss.speed", "gnss.course"):
+        early = drives.changed(early, path, 0.0, 60.0, lambda t, x: np.full_like(x, x[np.isfinite(x)][0]))
+    found = compare(early, fitted_car())
+    assert named(found) == set()
+    late = drives.changed(drives.car(seed=3), "gnss.latitude", 100.0, 160.0, lambda t, x: np.full_like(x, x[0]))
+    assert named(compare(late, fitted_car())) == {"gnss"}

@@ -47,6 +47,8 @@ _ESTIMATE = re.compile(
     r"global_position|local_position|estimat|ekf|filtered|setpoint|odom|nav_?(lat|lon|alt|v)|ref|truth|gt_|ground_?truth|relative|"
     r"uncalibrated"  # nor is a device with a zero and axes of its own
 )
+_BEGIN, BEGINS_S = re.compile(r"gnss|heading|attitude"), 10.0  # these repeat a value until they know where they are
+REPEATS, REPEATS_S = 8, 3.0
 _INERTIAL = frozenset({"gyro", "accelerometer", "yaw_rate"})
 SELDOM_S = 0.25  # an inertial sensor with longer steps was logged as samples, between which anything may happen
 _BAROMETER = re.compile(r"(?<!differential_)(?<!raw_)(?<!filtered_)baro|pressure_height|air_data|static")
@@ -179,6 +181,10 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
     if role == "barometer" and log.channels[mine[0]].name == "pressure" and not 2e4 < np.median(value) < 1.2e5:
         return  # a differential pressure, not that of the air
     value = _convention(role, tuple(log.channels[i].name for i in mine), value)
+    time = log.time[new]
+    if _BEGIN.match(role):
+        begun = _begun(time, value)
+        time, value = time[begun:], value[begun:]
     base, _, rest = role.partition(".")
     number = 1
     while (key := f"{base}{'' if number == 1 else number}{'.' + rest if rest else ''}") in found:
@@ -186,7 +192,17 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
     same = next((s.key for s in found.values() if s.sensor == sensor and s.role.partition(".")[0] == base), None)
     if rest and same is not None:
         key = f"{same.partition('.')[0]}.{rest}"
-    found.setdefault(key, Signal(key, role, sensor, columns, log.time[new], value))
+    found.setdefault(key, Signal(key, role, sensor, columns, time, value))
+
+
+def _begun(time: Float[np.ndarray, " n"], value: Float[np.ndarray, "n k"]) -> int:
+    """The row from which on a receiver or a filter knows where it is: until then it repeats one of its first values."""
+    changes = np.flatnonzero((np.diff(value, axis=0) != 0).any(axis=1))
+    ends = np.r_[changes, len(time) - 1]
+    starts = np.r_[0, changes + 1]
+    early = time[starts] - time[0] < BEGINS_S
+    held = early & (ends - starts >= REPEATS) & (time[ends] - time[starts] > REPEATS_S) & (ends < len(time) - 1)
+    return int(ends[held][-1]) + 1 if held.any() else 0
 
 
 def _has_fix(log: Log, sensor: str) -> Bool[np.ndarray, " T"]:

@@ -1,6 +1,5 @@
 """Exact repeats of a sensor that else does not repeat, or that repeats while the vehicle moves; rest is not frozen."""
 
-import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -15,8 +14,6 @@ MOVED_M = 20.0  # a place that repeats while the vehicle goes so far is frozen
 _MAY_REST = frozenset(f"gnss.{what}" for what in ("position", "height", "speed", "velocity", "climb")) | {
     *("wheel", "depth", "steering", "dvl", "barometer", "airspeed"),
 }
-# These repeat one of their first values until they know where they are.
-_BEGINS, BEGINS_S = re.compile(r"gnss|heading|attitude"), 10.0
 _MOVE_WITH_IT = frozenset({"gnss.position", "gnss.velocity", "dvl", "heading"})
 
 
@@ -40,8 +37,7 @@ def _repeats(grid: Grid, signal: Signal) -> Iterator[Finding]:
     lively, may_rest = same.mean() < 0.5, signal.role in _MAY_REST
     for first, last in found:
         count, lasts = last - first + 1, float(time[last] - time[first - 1])
-        not_begun = time[first] - time[0] < BEGINS_S and last < len(time) - 1 and _BEGINS.match(signal.role)
-        if count < REPEATS or lasts < REPEAT_S or not_begun:
+        if count < REPEATS or lasts < REPEAT_S:
             continue
         turning = turned is not None and turned[last] - turned[first - 1] > REPEAT_TURN_RAD and not may_rest
         moving = moved is not None and moved[last] - moved[first - 1] > max(MOVED_M, lasts)
