@@ -249,3 +249,19 @@ def test_a_log_that_is_none_of_all(tmp_path: Path) -> None:
     (tmp_path / "a.log").write_text("hello\nworld\n")
     with pytest.raises(LogError, match="none of a flight"):
         read(tmp_path / "a.log")
+
+
+def test_quantities_of_messages_are_no_devices(tmp_path: Path) -> None:
+    columns = {f"{name}.{axis}": noise(0.1) for name in ("AngularVelocity", "orientation") for axis in "xyz"}
+    columns |= {f"linear_acceleration.{axis}": noise(0.1) + 9.8 * (axis == "z") for axis in "xyz"}
+    log = read(table(tmp_path / "imu.csv", **columns))
+    assert {sensor.name for sensor in log.sensors} == {"gyro", "attitude", "accelerometer"}
+    columns |= {"orientation.w": 1 + noise(0.01)}
+    assert "quaternion" in {sensor.name for sensor in read(table(tmp_path / "with_w.csv", **columns)).sensors}
+
+
+def test_a_fix_without_names(tmp_path: Path) -> None:
+    path = tmp_path / "gps.csv"
+    rows = np.column_stack([TIME, 51.98 + 1e-6 * np.arange(N), 5.66 + 2e-6 * np.arange(N), 174_035 + noise()])
+    path.write_text("".join(",".join(f"{x:.9f}" for x in row) + "\n" for row in rows))
+    assert {"latitude", "longitude"} <= {channel.name for channel in read(path).channels}

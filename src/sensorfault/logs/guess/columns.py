@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import polars as pl
@@ -22,6 +23,7 @@ _STEADY = 0.15  # relative spread below which three axes have a steady length
 OTHER_TIME = "another time, or bookkeeping of it"
 QUALITY = "quality or state, not a measurement of motion"
 _OF_LENGTH_1, _NEARLY_ALL = 0.01, 0.99
+_OF_A_DRIVE_DEG = 2.0  # so far a drive goes at most
 _SENSORS = ("gyroscope", "gyro", "accelerometer", "acceleration", "magnetometer")  # as the files of phones are called
 BEACON = frozenset({"range", "position", "depth"})  # what a beacon tells of itself
 
@@ -44,7 +46,7 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
     """
     columns, left_out = [], []
     dotted = are_dotted(source.frame.columns)
-    pose = pose_of(source, time)
+    pose = pose_of(source, time) or fix_of(source, time)
     for name in source.frame.columns:
         if name == time:
             continue
@@ -101,6 +103,23 @@ def pose_of(source: Source, time: str | None) -> dict[str, Meaning]:
         return {}
     kinds = [("local_position", axis) for axis in "xyz"] + [("quaternion", axis) for axis in "xyzw"]
     return {name: Meaning(kind, axis, "", "") for name, (kind, axis) in zip(names, kinds, strict=True)}
+
+
+def fix_of(source: Source, time: str | None) -> dict[str, Meaning]:
+    """Two neighbours without names in a table called after a receiver that are a latitude and a longitude."""
+    names = [name for name in source.frame.columns if name != time]
+    called = re.search(r"(^|[^a-z])(gps|gnss)([^a-z]|$)", f"{source.table or ''} {source.path.stem}", re.IGNORECASE)
+    if called is None or not all(re.fullmatch(r"c\d+", name) for name in names):
+        return {}
+    for one, other in pairwise(names):
+        cells = [source.frame[name].cast(pl.Float64, strict=False).drop_nulls() for name in (one, other)]
+        if all(
+            len(cell) > 1 and most >= cell.abs().max() > 0 and cell.max() - cell.min() < _OF_A_DRIVE_DEG  # type: ignore[operator]
+            and not (cell == cell.round(3)).all()
+            for cell, most in zip(cells, (90.0, 180.0), strict=True)
+        ):  # fmt: skip
+            return {name: Meaning("position", axis, "", "") for name, axis in ((one, "latitude"), (other, "longitude"))}
+    return {}
 
 
 def beacons_of(meanings: Iterable[Meaning]) -> set[str]:

@@ -7,7 +7,11 @@ from dataclasses import replace
 from sensorfault.logs.guess.words import Meaning, read_name
 
 _DOTTED = re.compile(r"([A-Za-z][A-Za-z0-9_]*)\.([A-Za-z][A-Za-z0-9_]*)")
-_NO_DEVICE = frozenset({"field"})  # what `rostopic echo -p` writes before each name
+# What `rostopic echo -p` writes before each name, and quantities, as messages of ROS have them: no devices.
+_NO_DEVICE = re.compile(
+    r"field|((linear|angular)_?)?(acceleration|velocity|twist|rate)|orientation|(delta_?)?position|pose|quaternion|linear|angular",
+    re.IGNORECASE,
+)
 _MOST = 0.8  # share of the columns that must have such names
 _VELOCITY = ("north", "east", "down", "up", "forward", "right", "left")
 
@@ -15,7 +19,7 @@ _VELOCITY = ("north", "east", "down", "up", "forward", "right", "left")
 def device_of(name: str) -> str:
     """`gnss` of `gnss.north`; empty if the name is of another form."""
     match = _DOTTED.fullmatch(name)
-    return match[1] if match and match[1] not in _NO_DEVICE else ""
+    return match[1] if match and not _NO_DEVICE.fullmatch(match[1]) else ""
 
 
 def are_dotted(names: Sequence[str]) -> bool:

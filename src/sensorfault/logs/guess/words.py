@@ -29,7 +29,7 @@ _KINDS: tuple[tuple[str, re.Pattern[str]], ...] = tuple(
             r"(^|_)(?P<axis>turn_?rate|ang(ular)?_?(rate|vel|velocity|speed))$",
         ),  # in a plane
         ("gyro", rf"(^|_)(gyros?|gyr|gyroscope|omega|twist_angular|ang(ular)?_?(rate|vel|velocity|speed)|w)_?{_AXIS}$"),
-        ("accelerometer", rf"(^|_)(a|acc|accel|acceleration|accelerometer|specific_force)_?{_AXIS}$"),
+        ("accelerometer", rf"(^|_)(a|acc|accel|(linear_)?acceleration|accelerometer|specific_force)_?{_AXIS}$"),
         ("magnetometer", rf"(^|_)(m|mag|magnetometer|magnetic|magnetic_field|compass)_?{_AXIS}$"),
         ("quaternion", r"(^|_)(q|quat|quaternion|orientation)_?(?P<axis>[0-3wxyz])$"),
         ("attitude", r"(^|_)(?P<axis>roll|pitch)(_of_quaternion)?$|^(?P<alone>phi|theta)$"),
@@ -110,9 +110,13 @@ def _beside(bare: str, unit: str, others: Collection[str]) -> Meaning | None:
     if framed:
         kind = _OF_FRAMED[framed["what"]]
         return Meaning("quality", bare, "", unit) if framed["bias"] else Meaning(kind, framed["axis"], "", unit)
-    if len(bare) > 5:
+    angle = re.fullmatch(r"(?P<stem>.*?)_?orientation_(?P<axis>[xyz])", bare)
+    if len(bare) > 5 and angle is None:
         return None
     names = {"_".join(_tokens(_split_unit(other)[0])) for other in others}
+    if angle is not None and bare[:-1] + "w" not in names:  # three numbers are angles
+        name = {"x": "roll", "y": "pitch", "z": "yaw"}[angle["axis"]]
+        return Meaning("heading" if name == "yaw" else "attitude", name, angle["stem"], unit)
     if re.fullmatch(r"g_?[xyz]", bare) and {bare.replace("g", "a", 1), bare.replace("g", "acc", 1)} & names:
         return Meaning("gyro", bare[-1], "", unit)
     if re.fullmatch(r"t[xyz]", bare) and {"qx", "qy", "qz", "qw"} <= names:

@@ -146,5 +146,5 @@ def looks_candump(head: bytes) -> bool:
 
 FORMATS = (
     Format("CAN recording", ("*.blf", "*.asc", "*.trc"), remembering(read_can), parts=True),
-    Format("candump", ("*.log",), remembering(read_can), looks_candump, parts=True),
+    Format("candump", ("*.log",), remembering(read_can), looks_candump, parts=True, priority=2),
 )

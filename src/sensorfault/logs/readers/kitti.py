@@ -59,4 +59,4 @@ def looks_kitti(head: bytes) -> bool:
     return _STAMP.fullmatch(first) is not None and "." in first
 
 
-FORMAT = Format("KITTI OXTS", ("timestamps.txt",), one_table(read_kitti), looks_kitti, priority=1)
+FORMAT = Format("KITTI OXTS", ("timestamps.txt",), one_table(read_kitti), looks_kitti, priority=2)

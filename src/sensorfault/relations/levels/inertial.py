@@ -12,7 +12,7 @@ from sensorfault.relations.signals import Signal
 REST_ACC, REST_RATE, REST_RATE_SD = 0.25, 0.08, 0.03  # at rest: sd of |a|, mean and sd of |rate| over 1 s
 REST_M_S = 1.0  # slower than this a vehicle may be at rest
 RESTING = 8  # measurements in a second that can show rest
-REST_OFF, REST_WINDOWS = 0.6, 3  # gravity at rest may be off by this [m/s^2], median of three windows
+REST_OFF, REST_WINDOWS = 0.8, 3  # gravity at rest may be off by this [m/s^2], median of three windows
 FLIGHT_OFF, TILT_RAD = 2.0, 1.05  # mean acceleration over 2 s may differ from g by this, unless the vehicle leans
 GYRO_REST = 0.3  # a gyro may read this while a vehicle on wheels stands [rad/s]; less is a matter of calibration
 ROUGH_RATE, ROUGH_ACC = 0.7, 2.5  # rougher than this [rad/s, m/s^2] gravity is not to be seen
