@@ -165,7 +165,7 @@ def test_labels_of_smartloc(real_data: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "rows", "duration_s", "first", "last"),
     [
-        ("Robot1_Odometry", 61785, 887.947, {"forward_speed.speed": 0.086}, {"forward_speed.speed": 0.0}),
+        ("Robot1_Odometry", 61785, 887.947, {"speed.speed": 0.086}, {"speed.speed": 0.0}),
         ("Robot1_Groundtruth", 49241, 771.873, {"local_position.x": 1.4127729}, {"local_position.x": 3.7738052}),
         (
             "Robot1_Measurement",

@@ -160,5 +160,5 @@ FORMAT = Format(
     remembering(read_dataflash_text),
     looks_dataflash_text,
     parts=True,
-    priority=1,
+    priority=3,
 )
