@@ -1,7 +1,7 @@
 """The vehicles that the laws of the default method are tried on: a healthy log of each, and what its sensors may lie."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -25,7 +25,7 @@ class Vehicle:
         duration_s: of the log.
         lie_s: from when to when a sensor lies or is silent [s].
         lies: what is added to a channel of each sensor that others can contradict [SI].
-        alone: channels whose lie no other sensor contradicts, and whose log is judged as the healthy one.
+        alone: the same for channels that no other sensor contradicts enough to tell who lies.
         alike: sensors that are one device to the method, by the name that it gives them.
     """
 
@@ -34,7 +34,7 @@ class Vehicle:
     duration_s: float
     lie_s: tuple[float, float]
     lies: dict[str, float]
-    alone: tuple[str, ...] = ()
+    alone: dict[str, float] = field(default_factory=dict)
     alike: str = ""
 
     @cached_property
@@ -66,7 +66,7 @@ CAR = Vehicle(
     150.0,
     (40.0, 65.0),
     {"gyro.z": 0.3, "accelerometer.x": 3.0, "wheels.speed": 6.0, "steering.angle": 1.0, "gnss.latitude": 40 * METRE},
-    ("gyro.x", "accelerometer.z"),
+    {"gyro.x": 2.0, "accelerometer.z": 1.0},
 )
 COPTER = Vehicle(
     "copter",
@@ -82,6 +82,7 @@ COPTER = Vehicle(
         "gnss.altitude": 15.0,
         "gnss.north": 5.0,
     },
+    {"attitude.roll": 0.6, "attitude.pitch": -0.3},
 )
 WING = Vehicle(
     "wing",
@@ -96,7 +97,7 @@ WING = Vehicle(
         "gnss.longitude": 80 * METRE,
         "airspeed.airspeed": 8.0,
     },
-    ("control.throttle",),
+    {"control.throttle": 2.0, "attitude.roll": 0.15, "attitude.pitch": 0.3},
 )
 RAIL = Vehicle(
     "rail",
@@ -112,7 +113,7 @@ UNDERWATER = Vehicle(
     300.0,
     (100.0, 140.0),
     {"gps.latitude": 60 * METRE, "dvl.forward": 2.0, "compass.heading": 1.0},
-    ("pressure.depth", "leader1.range"),
+    {"pressure.depth": 2.0, "leader1.range": 20.0},
 )
 VEHICLES = (CAR, COPTER, WING, RAIL, UNDERWATER)
 
