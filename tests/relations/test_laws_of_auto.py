@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import sensorfault as sf
-from relations.vehicles import COPTER, RAIL, VEHICLES, Vehicle, joints
+from relations.vehicles import COPTER, VEHICLES, Vehicle, joints
 from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
-from sensorfault.logs.table import Log, LogError, Sensor
-from sensorfault.runtime.compared import Comparison, ComparingDetector
+from sensorfault.logs.table import Log, LogError
+from sensorfault.runtime.compared import ComparingDetector, Comparison
 from sensorfault.runtime.result import Detection
 
 every_vehicle = pytest.mark.parametrize("vehicle", VEHICLES, ids=str)

@@ -1,4 +1,4 @@
-"""The vehicles that the laws of the default method are tried on: a healthy log of each, and what its sensors may lie."""
+"""The vehicles on which the laws of the default method are tried: a healthy log of each, and its lies."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
