@@ -14,7 +14,9 @@ from sensorfault.numerics.gnss.constants import L1_HZ, LIGHT_M_S
 
 ROUNDS = 10
 FAR_M, FAR_M_S = 5.0, 0.5  # a residual beyond this pulls less
+LONE = 10.0  # the worst residual is out if it is so many times larger than the mean of the others
 SPARE = 1  # satellites more than unknowns
+FARTHEST_M = 1e8  # no satellite is so far away
 EARTH_M = (6.3e6, 6.5e6)  # from the centre: where a receiver on or over the ground is
 
 
@@ -43,7 +45,7 @@ def solved(log: Log) -> Solved | None:
     except LogError:
         return None
     fresh = np.stack([log.fresh[:, log.index(f"{name}.corrected_m")] for name in seen.names], axis=1)
-    usable = seen.usable & fresh
+    usable = seen.usable & fresh & (np.abs(seen.corrected) < FARTHEST_M)
     systems = sorted({name[0] for name in seen.names})
     system = np.array([[name[0] == one for one in systems] for name in seen.names], float)
     clocks = (usable[:, :, None] * system).any(axis=1).sum(axis=1)
@@ -82,8 +84,14 @@ def solved(log: Log) -> Solved | None:
 def _least_squares(
     ahead: Float[np.ndarray, "n S p"], off: Float[np.ndarray, "n S"], there: Float[np.ndarray, "n S"], far: float
 ) -> Float[np.ndarray, "n p"]:
-    """One step for all epochs; a residual beyond `far` pulls with the root of its weight. An absent clock stays 0."""
-    weight = there / np.maximum(np.abs(off) / far, 1.0)
+    """One step for all epochs; a residual beyond `far` pulls with the root of its weight, and one that stands alone not
+    at all. An absent clock stays 0.
+    """
+    size = np.where(there, np.abs(off), 0.0)
+    worst = size.max(axis=1, keepdims=True)
+    others = (size.sum(axis=1, keepdims=True) - worst) / np.maximum(there.sum(axis=1, keepdims=True) - 1, 1)
+    lone = (size == worst) & (worst > LONE * np.maximum(others, far))
+    weight = (there & ~lone) / np.maximum(size / far, 1.0)
     a = ahead * weight[..., None]
     normal = np.einsum("nsp,nsq->npq", a, ahead)
     absent = np.einsum("npp->np", normal) == 0

@@ -12,6 +12,7 @@ from sensorfault.relations.signals import Signal
 Kept = TypeVar("Kept")
 STEP_S = 0.2  # of the grid
 PAUSE_S = 1.0  # nothing at all was recorded for longer: the recorder paused
+EXACT_S = 1e-6  # times that are closer are the same: a clock may begin anywhere
 STALE_S, STALE_PERIODS = 1.5, 3.1  # a longer gap between two measurements is a hole: no window may span it
 LONE = frozenset({"barometer", "gnss.height", "depth"})
 GRAVITY = 9.80665  # [m/s^2]
@@ -41,7 +42,8 @@ class Grid:
     _kept: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.time: Float[np.ndarray, " T"] = np.arange(self.start_s + STEP_S, self.end_s, STEP_S)
+        count = int(np.ceil((self.end_s - self.start_s - EXACT_S) / STEP_S)) - 1
+        self.time: Float[np.ndarray, " T"] = self.start_s + STEP_S * np.arange(1, max(count, 0) + 1)
 
     def __contains__(self, key: str) -> bool:
         return key in self.signals
@@ -50,9 +52,10 @@ class Grid:
         """Ticks that lie in a hole of the signal, before its first or after its last measurement."""
         signal = self.signals[key]
         stale = max(STALE_S, STALE_PERIODS * signal.period_s)
-        after = np.clip(np.searchsorted(signal.time, self.time), 1, len(signal.time) - 1)
+        after = np.clip(np.searchsorted(signal.time, self.time - EXACT_S), 1, len(signal.time) - 1)
         gap = signal.time[after] - signal.time[after - 1]
-        return np.asarray((gap > stale) | (self.time < signal.time[0]) | (self.time > signal.time[-1]))
+        first, last = signal.time[0] - EXACT_S, signal.time[-1] + EXACT_S
+        return np.asarray((gap > stale + EXACT_S) | (self.time < first) | (self.time > last))
 
     def put(self, key: str, value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "T k"]:
         """Numbers at the times of a signal, drawn between measurements onto the ticks."""

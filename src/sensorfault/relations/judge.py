@@ -151,8 +151,10 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
     turned = np.array([bool(TURNED & set(test.relation.kind.split("|"))) for test in piece.tests])
     alone = _over(np.where(by_attitude | turned, np.nan, score))
     lone = _attitude_alone(piece, np.where(by_attitude[None, :], score, np.nan)) & ~alone
+    # A tilt that the gyro denies is no fault of what it turns, whoever of the two is wrong.
+    denied = _over(score[:, [test.relation.kind == "tilt|gyro" for test in piece.tests]])
     votes = np.where(by_attitude, np.nan, score)
-    votes[np.ix_(_distrusted(lone, _over(score[:, turned])), turned)] = np.nan  # a wrong attitude turned these
+    votes[np.ix_(_distrusted(lone | denied, _over(score[:, turned])), turned)] = np.nan  # a wrong attitude turned these
     over = _over(votes)
     episodes = []
     for device, alarm in ((None, over), ("attitude", lone)):

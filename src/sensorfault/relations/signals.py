@@ -12,6 +12,7 @@ from sensorfault.relations.constellation import solved
 SATELLITES = "satellites"  # all that a receiver receives, as one device
 RANGE_ROLE = "range of a satellite"
 EARTH_M = 6_371_000.0  # mean radius
+ABSURD = 1e8  # no sensor measures so much of anything in SI units: such a number is no measurement
 XYZ = ("x", "y", "z")
 
 
@@ -170,7 +171,7 @@ def _roles(sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]) 
 
 def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tuple[int, ...]) -> None:
     mine = list(columns)
-    new = log.fresh[:, mine].any(axis=1) & np.isfinite(log.value[:, mine]).all(axis=1)
+    new = log.fresh[:, mine].any(axis=1) & (np.abs(log.value[:, mine]) < ABSURD).all(axis=1)
     if role.startswith("gnss."):
         new &= _has_fix(log, sensor)
     if new.sum() < 5:

@@ -56,7 +56,7 @@ def rows(keys: set[str], courses: bool) -> Iterator[Relation]:
     """The relations of a log that has these signals. `courses`: the vehicle goes where it points."""
     receivers = sorted({key.partition(".")[0] for key in keys if key.startswith("gnss")})
     yield from _heights(keys, receivers)
-    yield from _places(receivers)
+    yield from _places(keys, receivers)
     yield from _angles(keys, receivers, courses)
     yield from _speeds(keys, receivers)
     yield from _twins(keys)
@@ -96,8 +96,11 @@ def _heights(keys: set[str], receivers: list[str]) -> Iterator[Relation]:
             yield _row(f"{name} | {other}", "baro|baro", "up", 1, baro, second, {who: 1, whom: -1})
 
 
-def _places(receivers: list[str]) -> Iterator[Relation]:
+def _places(keys: set[str], receivers: list[str]) -> Iterator[Relation]:
     level = ("accelerometer", "level")
+    reckoning: Blame = {("dvl", ""): -1}
+    if "heading" in keys:
+        reckoning[("heading", "")] = -1  # what turns the way is a suspect
     for g in receivers:
         for i, axis in enumerate(("north", "east")):
             place, speed = w.measured(f"{g}.position", i), w.velocity(i, g)
@@ -135,7 +138,7 @@ def _places(receivers: list[str]) -> Iterator[Relation]:
                 1,
                 place,
                 w.reckoned(i),
-                {(g, "position"): 1, ("dvl", ""): -1},
+                {(g, "position"): 1, **reckoning},
             )
 
 

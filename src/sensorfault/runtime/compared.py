@@ -14,6 +14,7 @@ from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import SAID, Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 from sensorfault.relations.events import METHOD, events_of, sensor_of
+from sensorfault.relations.grid import EXACT_S
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
 from sensorfault.relations.signals import Signal
@@ -217,7 +218,8 @@ def _detection(log: Log, judged: Judged) -> Detection:
     sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
     sample = np.where(tested.any(axis=1), OK, UNKNOWN).astype(np.int8)
     for event in events:
-        rows = slice(*np.searchsorted(log.time, (event.start_s, np.inf if event.end_s is None else event.end_s + 1e-9)))
+        end_s = np.inf if event.end_s is None else event.end_s + EXACT_S
+        rows = slice(*np.searchsorted(log.time, (event.start_s - EXACT_S, end_s)))
         sample[rows] = FAULT
         if event.sensor in sensors:
             sensor[rows, sensors.index(event.sensor)] = FAULT
@@ -268,7 +270,7 @@ def tested_sensors(log: Log, judged: Judged, sensors: list[str]) -> Bool[np.ndar
     for piece, score in zip(judged.pieces, judged.scores, strict=True):
         if not piece.tests:
             continue
-        tick = np.searchsorted(piece.grid.time, log.time)
+        tick = np.searchsorted(piece.grid.time, log.time - EXACT_S)
         inside = (log.time >= piece.grid.start_s) & (log.time <= piece.grid.end_s)
         tick = np.clip(tick, 0, len(piece.grid.time) - 1)
         for i, sensor in enumerate(sensors):
