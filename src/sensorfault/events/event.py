@@ -7,7 +7,9 @@ from sensorfault.core import html
 from sensorfault.core.times import clock
 from sensorfault.faults.fault import KINDS as FAULT_KINDS
 
-KINDS = (*FAULT_KINDS, "unknown")
+JUMP = "jump"  # of the clock
+KINDS = (*FAULT_KINDS, "unknown", JUMP)
+CLOCK = "clock"
 MOTION = "vehicle motion"
 WHOLE_LOG = "the whole log"  # nothing was recorded
 UNKNOWN = "unknown which"  # no sensor could be isolated
@@ -20,14 +22,15 @@ class Event:
     Args:
         start_s: time of the first faulty sample [s].
         end_s: time of the last one [s]; None while the fault is ongoing.
-        subject: "sensor", or "motion" if healthy sensors measured a motion that the vehicle cannot make.
+        subject: "sensor"; "motion" if healthy sensors measured a motion that the vehicle cannot make; "clock" if the
+            clock of the log jumped, which is no sensor's fault: `sensor` is "clock" too.
         sensor: name; None if the faulty sensor could not be isolated. For a kind "missing" without a sensor, nothing at
             all was recorded: a gap in the log.
         channel: name; None if all channels of the sensor are faulty. Channels that one test accuses together, such as
             latitude and longitude, are named together.
         kind: one of KINDS.
         peak_score: score of the test that exceeded its limit most, when it did. For a kind "missing", how long nothing
-            was measured [s].
+            was measured [s]. For a kind "jump", how far the clock was set, negative if back [s].
         limit: the limit of that test. For a kind "missing", how long a sensor may be silent [s].
         method: the recipe of the model.
         found_by: the comparison that found it, where a method names it: "gnss.height | barometer over 15 s".
@@ -69,7 +72,8 @@ class Event:
     def __str__(self) -> str:
         end = "-ongoing" if self.end_s is None else f"-{clock(self.end_s)}" if self.end_s > self.start_s else ""
         sizes = (("peak", self.peak_score), ("limit", self.limit))
-        unit = " s" if self.kind == "missing" else ""
+        unit = " s" if self.kind in ("missing", JUMP) else ""
+        sizes = (("size", self.peak_score),) if self.kind == JUMP else sizes
         size = ", ".join(f"{name} {value:.3g}{unit}" for name, value in sizes if value is not None)
         kind = "fault" if self.kind == "unknown" else self.kind
         of = f", {self.where}" if self.where.startswith(UNKNOWN) else f" of {self.where}"

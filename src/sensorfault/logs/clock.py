@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from sensorfault.logs.clock_steps import continued, spread
+from sensorfault.logs.clock_steps import Step, continued, spread, steps, wraps
 from sensorfault.logs.dates import READABLE
 from sensorfault.logs.entries import FileEntry
+from sensorfault.logs.jumps import Jump
 from sensorfault.logs.phrase import counted, times
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.stamps import seconds, time_of, unreadable
@@ -24,7 +25,8 @@ _UNIX_S = (946_684_800.0, 4_102_444_800.0)  # the years 2000 to 2100: a reading 
 class Clock:
     """T rows that are kept. `zero_s`: the column's first reading [s]; `time` [s] counts from there.
 
-    `period_s`: the usual time between two rows [s].
+    `period_s`: the usual time between two rows [s]. `jumps`: of the column, by days or back by seconds,
+    taken out; those at the end of a day or a week, or of a counter's bits, are none.
     """
 
     zero_s: float
@@ -32,6 +34,7 @@ class Clock:
     rows: Int[np.ndarray, " T"]
     period_s: float
     notes: tuple[str, ...]
+    jumps: tuple[Jump, ...] = ()
 
     @property
     def is_unix(self) -> bool:
@@ -58,7 +61,8 @@ def read_clock(source: Source, file: FileEntry) -> Clock:
             raise LogError(f"{source.path}: one row is no log; name a file with at least two rows.")
         return Clock(zero, time, np.arange(len(time)), 1 / (file.rate_hz or 1.0), (said,))
     notes = _without_time(source, file, time)
-    time, jumps = continued(source, column, time)
+    jumped, read = steps(source, time), time
+    time = continued(time, jumped)
     time, even = spread(source, column, time)
     usable = np.flatnonzero(np.isfinite(time))
     rows, faults = _rising(source, column, time, usable)
@@ -67,7 +71,14 @@ def read_clock(source: Source, file: FileEntry) -> Clock:
     first = float(time[rows[0]])
     kept = (time if len(rows) == len(time) else time[rows]) - first
     period, unsteady = _steadiness(source.name, kept)
-    return Clock(zero + first, kept, rows, period, (*notes, *jumps, *even, *faults, *unsteady))
+    jumps = tuple(Jump(float(time[one.row]) - first, -one.back_s, column) for one in jumped)
+    faulty = tuple(j for j, one in zip(jumps, jumped, strict=True) if not wraps(zero + float(read[one.row]), j.step_s))
+    said = [_said(source, one, jump) for one, jump in zip(jumped, jumps, strict=True)]
+    return Clock(zero + first, kept, rows, period, (*notes, *said, *even, *faults, *unsteady), faulty)
+
+
+def _said(source: Source, step: Step, jump: Jump) -> str:
+    return f"{source.name}: {jump.said} at {source.place(step.row)}; from there on it is continued without the jump."
 
 
 def _without_time(source: Source, file: FileEntry, time: np.ndarray) -> list[str]:

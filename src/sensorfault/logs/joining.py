@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from sensorfault.logs.entries import FileEntry
+from sensorfault.logs.jumps import distinct
 from sensorfault.logs.late import Late
 from sensorfault.logs.one_clock import Piece, put_on_one_clock
 from sensorfault.logs.pauses import GAP, Pauses, pauses_of, pauses_said
@@ -66,6 +67,8 @@ class Joining:
         if new.any():
             rows = slice(int(np.argmax(new)), len(new) - int(np.argmax(new[::-1])))
             part = replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows], notes=())
+            jumps = distinct(self._late.jumps(self.known.zero_s or 0.0))
+            part = replace(part, jumps=tuple(j for j in jumps if self.handed_s < j.time_s <= part.time[-1]))
             ticks = np.append(self.handed_s, part.time) if np.isfinite(self.handed_s) else part.time
             self.pauses = np.concatenate([self.pauses, pauses_of(ticks, log.period_s)])
             self.handed_s = float(part.time[-1])

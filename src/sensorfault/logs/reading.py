@@ -10,6 +10,7 @@ from sensorfault.logs.clock import is_unix
 from sensorfault.logs.describing import Description, describe
 from sensorfault.logs.entries import FileEntry
 from sensorfault.logs.guess.vehicle import guess_source
+from sensorfault.logs.jumps import distinct
 from sensorfault.logs.one_clock import OneClock, put_on_one_clock
 from sensorfault.logs.pauses import pauses_said
 from sensorfault.logs.place import Where, pair_files
@@ -122,6 +123,7 @@ def log_of(
     at = {channel.path: i for i, channel in enumerate(channels)}
     order = [at[f"{sensor.name}.{channel.name}"] for sensor in vehicle.sensors for channel in sensor.channels]
     in_order = order == list(range(len(order)))  # spares a copy of long logs
+    jumps = distinct(replace(j, time_s=j.time_s + one.zero_s - zero) for one in streams for j in one.jumps)
     epoch = vehicle.epoch_s if vehicle.epoch_s is not None else (zero if is_unix(zero) else None)
     return Log(
         time=clock.time - clock.time[0] + (start - zero),
@@ -136,6 +138,7 @@ def log_of(
         wheelbase_m=vehicle.wheelbase_m,
         steering_ratio=vehicle.steering_ratio,
         description=vehicle,
+        jumps=jumps,
     )
 
 

@@ -20,10 +20,23 @@ from sensorfault.logs.time_units import (
 
 ISO_FORMS = ("%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%d %H:%M:%S%.f", "%Y-%m-%dT%H:%M:%S%.f%z", "%Y-%m-%d %H:%M:%S%.f%z")
 DAY_S = 86_400.0
+MENDED = "\x00mended"  # a column of ours: what to add to each reading of the clock [s]
 
 
 def seconds(source: Source, file: FileEntry) -> tuple[float, np.ndarray]:
-    """The first reading [s] and the seconds since then, NaN where there is none.
+    """The first reading [s] and the seconds since then, NaN where there is none; jumps that are known are taken out.
+
+    Raises:
+        LogError: as `read_seconds`.
+    """
+    zero, time = read_seconds(source, file)
+    if MENDED not in source.frame.columns:
+        return zero, time
+    return zero, time + source.frame[MENDED].fill_null(0.0).to_numpy()
+
+
+def read_seconds(source: Source, file: FileEntry) -> tuple[float, np.ndarray]:
+    """The first reading [s] and the seconds since then, NaN where there is none, as the file has them.
 
     Integers are subtracted as integers: nanoseconds since 1970 would lose 200 ns in a float.
 

@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float
 from sensorfault.logs.clock import Clock, read_clock
 from sensorfault.logs.entries import ChannelEntry, FileEntry, SensorEntry
 from sensorfault.logs.held import STALE, fresh_rows, looks_held, share_old, share_repeated, stale, usual_period_s
+from sensorfault.logs.jumps import Jump
 from sensorfault.logs.readers.rtklib import read_tag
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import SAID, Channel, LogError, Sensor
@@ -25,6 +26,7 @@ class Stream:
     """T rows of one file, C channels of its sensors.
 
     `zero_s`: the reading of the common clock at time 0 [s]. `period_s`: the usual time between two rows [s].
+    `jumps`: of its clock, at times as `time` has them.
     `measured`: whether a channel of it is a measurement or an estimate.
     `pace_s`: the same, but longer where no tick of a log should be: where only an estimator or a state speaks.
     """
@@ -39,6 +41,7 @@ class Stream:
     sensors: tuple[Sensor, ...]
     notes: tuple[str, ...]
     measured: bool = True
+    jumps: tuple[Jump, ...] = ()
 
     @property
     def pace_s(self) -> float:
@@ -86,9 +89,8 @@ def read_stream(source: Source, file: FileEntry, sensors: tuple[SensorEntry, ...
             notes += _held_note(source.name, sensor, value[:, own], fresh[:, own], period)
         at = own.stop
     notes += gaps.notes()
-    return Stream(
-        source.name, zero, clock.period_s * rate, time, value, fresh, channels, tuple(described), tuple(notes), measured
-    )
+    said = tuple(channels), tuple(described), tuple(notes), measured, clock.jumps
+    return Stream(source.name, zero, clock.period_s * rate, time, value, fresh, *said)
 
 
 def channel_of(channel: ChannelEntry, sensor: SensorEntry) -> Channel:

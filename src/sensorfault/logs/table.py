@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float, Int
 from sensorfault.core import html
 from sensorfault.core.extras import require
 from sensorfault.core.times import clock
+from sensorfault.logs.jumps import Jump
 from sensorfault.logs.pauses import Pauses, pauses_of
 from sensorfault.logs.phrase import counted, listed, sensors_named, with_unit
 from sensorfault.logs.units import from_si
@@ -73,7 +74,7 @@ class Log:
     `wheelbase_m` and `steering_ratio` are the vehicle's, if its file says them.
     `notes`: remarks from reading (clock faults, held rows, guesses), one sentence each.
     `block`: what a residual generator takes besides, arrays with an entry for each tick (see `epochs`).
-    `description`: what its columns were read as, by a vehicle.toml or a guess; None for a log that was made by hand.
+    `jumps`: of the clock, which were taken out of `time`.
     `damage`: those of them that say where a file could not be read, and what was read all the same.
     `description`: what its columns were read as, by a vehicle.toml, a model or a guess; None of a log made by hand.
     """
@@ -91,6 +92,7 @@ class Log:
     steering_ratio: float | None = None
     block: Any = ()
     description: "VehicleFile | None" = field(default=None, repr=False, compare=False)
+    jumps: tuple[Jump, ...] = ()
 
     def __post_init__(self) -> None:
         rows, width = self.value.shape

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from html import escape
 
 from sensorfault.core.times import clock
-from sensorfault.events.event import MOTION, UNKNOWN, WHOLE_LOG, Event
+from sensorfault.events.event import CLOCK, MOTION, UNKNOWN, WHOLE_LOG, Event
 from sensorfault.faults.fault import SIZELESS, Fault
 from sensorfault.report.page_sketch import Sketch
 
@@ -25,12 +25,14 @@ def headline(sketch: Sketch) -> str:
     """The finding in one sentence."""
     whom = [event.accused for event in sketch.events]
     named = {e.sensor for e in sketch.events if e.sensor is not None and e.subject == "sensor"}
-    faults = sum(one not in (MOTION, WHOLE_LOG) for one in whom)
+    faults = sum(one not in (CLOCK, MOTION, WHOLE_LOG) for one in whom)
     text = _count(faults, "fault") + (f" on {_count(len(named), 'sensor')}" if named else "")
     if UNKNOWN in whom:
         text += f", {whom.count(UNKNOWN)} of them on an unknown sensor"
     if MOTION in whom:
         text += f", {_count(whom.count(MOTION), 'implausible motion')}"
+    if CLOCK in whom:
+        text += f", {_count(whom.count(CLOCK), 'jump')} of the clock"
     if WHOLE_LOG in whom:
         text += f", {_count(whom.count(WHOLE_LOG), 'gap')} in the log"
     unjudged = blind(sketch)

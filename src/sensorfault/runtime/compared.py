@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
+from sensorfault.events.clock_events import by_onset, clock_events
 from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import SAID, Channel, Log, LogError, Sensor
@@ -235,7 +236,7 @@ def _detection(log: Log, judged: Judged) -> Detection:
         motion=np.full(len(log), UNKNOWN, np.int8),
         repaired=np.where(channel == FAULT, np.nan, log.value),
         traces=_traces(log, judged),
-        events=events,
+        events=by_onset(events, clock_events(log, METHOD)),
         coverage=coverage,
     )
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from sensorfault.core.verdicts import FAULT
+from sensorfault.events.clock_events import by_onset, clock_events
 from sensorfault.events.event import Event
 from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import Log
@@ -28,6 +29,7 @@ class Detector:
         self._see = see
         self._state = model.monitor.init()
         self._extractor = EventExtractor(model)
+        self._jumps: tuple[Event, ...] = ()  # of the clock
         self._parts = self._rows = 0
         self._first: Log | None = None  # the first row
         self._last: tuple[Log, Replayed] | None = None  # the last part
@@ -43,6 +45,7 @@ class Detector:
         log = self.model.take(part)
         self._state, result = replay_on(self.model.monitor, self._state, log, progress)
         self._extractor.take(log, result)
+        self._jumps += clock_events(log, self.model.method)
         self._last = log, result
         if self._first is None:
             self._first = _row(log, 0)
@@ -69,7 +72,7 @@ class Detector:
     def _part(self) -> Detection:
         """The last part, with all events so far."""
         assert self._last is not None
-        return detected(self.model, *self._last, self._extractor.events)
+        return detected(self.model, *self._last, by_onset(self._extractor.events, self._jumps))
 
 
 def joined(parts: list[Log]) -> Log:
