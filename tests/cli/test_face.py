@@ -96,7 +96,10 @@ def test_help_and_version_import_nothing_slow() -> None:
     [
         (["init", "drive.csv"], {"jax", "equinox", "scipy", "plotly", "pyulog", "pymavlink", "asammdf"}),
         (["info", "drive.csv"], {"jax", "equinox", "optax", "scipy", "plotly", "pyulog", "pymavlink", "asammdf"}),
-        (["methods"], {"jax", "equinox", "optax", "scipy", "polars", "plotly", "sensorfault.methods.gnss.rail"}),
+        (
+            ["methods"],
+            {"jax", "equinox", "optax", "scipy", "polars", "plotly", "sensorfault.methods.gnss.satellite_bank"},
+        ),
         (["reproduce", "--help"], {"jax", "numpy", "polars", "sensorfault_studies"}),
         (["nosuch"], {"jax", "numpy", "polars", "sensorfault.cli.demo"}),
         (["--version"], {"jax", "numpy", "polars", "sensorfault.cli.demo", "sensorfault.cli.reproduce"}),

@@ -32,7 +32,7 @@ def test_what_a_log_holds(run: Run, tmp_path: Path) -> None:
     assert "slope" in result["applies"]
     assert "two joints" in result["does_not_apply"]["arm-kalman"]
     assert set(result["applies"]) | set(result["does_not_apply"]) == set(METHODS)
-    assert "drone" in result["applies"]
+    assert "drone-composite" in result["applies"]
     assert "arm-kalman" in said.out
 
 
@@ -115,7 +115,7 @@ def test_what_keeps_a_method_from_running_is_what_its_fit_says(name: str) -> Non
 
 def test_a_method_of_parts_runs_if_one_of_them_does() -> None:
     rig = fitted.rig().between(end_s=20.0)
-    car = METHODS["car"]
+    car = METHODS["car-composite"]
     assert car.lacks(rig) == ""
     assert set(car.lacking_parts(rig)) < {part.name for part in car.parts}
     still = Log(rig.time, rig.value * 0, rig.fresh, rig.channels, rig.sensors)

@@ -7,6 +7,7 @@ import pytest
 
 from cli.conftest import Run, Said
 from sensorfault.methods.catalog import METHODS
+from sensorfault.runtime.names import CHANNELS, VEHICLES
 
 KEYS = {"start_s", "end_s", "subject", "sensor", "channel", "kind", "peak_score", "limit", "method"} | {
     "found_by",
@@ -154,9 +155,9 @@ def test_the_catalog(run: Run) -> None:
     assert said.code == 0
     assert said.err == ""
     result = json.loads(said.out)["methods"]
-    assert [method["name"] for method in result] == ["auto", *METHODS]
+    assert [method["name"] for method in result] == [*VEHICLES, *CHANNELS, *METHODS]
     assert all(set(method) == {"name", "title", "source", "false_alarm_rate"} for method in result)
-    table = run("methods")
+    table = run("methods", "--all")
     assert "elm-autoencoder" in table.out
     assert "Min et al. 2021" in table.out
 

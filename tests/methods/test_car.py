@@ -28,7 +28,7 @@ def log() -> Log:
 
 @cache
 def model() -> Model:
-    return recipe("car").build(log().between(end_s=LEARN_S), 0, Session())
+    return recipe("car-composite").build(log().between(end_s=LEARN_S), 0, Session())
 
 
 def found(*faults: Fault) -> Detection:
@@ -63,7 +63,7 @@ def test_each_kind_is_found_named_and_laid_to_its_sensor(fault: Fault) -> None:
 
 def test_without_a_receiver_the_inertial_unit_is_still_watched() -> None:
     alone = log().select([c.path for c in log().channels if c.sensor != "gnss"]).between(end_s=120.0)
-    made = recipe("car").build(alone, 0, Session())
+    made = recipe("car-composite").build(alone, 0, Session())
     assert all(made.watched)
     assert "no position" in made.summary["cannot"]["motion-deficit"]
     assert set(made.summary["cannot"]) == {"motion-deficit", "bicycle-kalman", "side-force"}
@@ -71,7 +71,7 @@ def test_without_a_receiver_the_inertial_unit_is_still_watched() -> None:
 
 def test_without_an_inertial_unit_the_position_is_still_watched() -> None:
     alone = log().select([c.path for c in log().channels if c.sensor == "gnss"]).between(end_s=LEARN_S)
-    made = recipe("car").build(alone, 0, Session())
+    made = recipe("car-composite").build(alone, 0, Session())
     watched = {c.name for c, w in zip(made.channels, made.watched, strict=True) if w}
     assert {"latitude", "longitude"} <= watched
     assert "bicycle-kalman" in made.summary["cannot"]
@@ -80,4 +80,4 @@ def test_without_an_inertial_unit_the_position_is_still_watched() -> None:
 def test_a_log_that_no_part_can_run_on() -> None:
     still = replace(log(), value=np.zeros_like(log().value)).between(end_s=60.0)
     with pytest.raises(LogError, match="moves for 0 s"):
-        recipe("car").build(still, 0, Session())
+        recipe("car-composite").build(still, 0, Session())

@@ -29,7 +29,7 @@ def flight() -> Log:
 
 @cache
 def fitted() -> Model:
-    return METHODS["drone"].build(flight().between(end_s=FITTED_S), 0, SILENT)
+    return METHODS["drone-composite"].build(flight().between(end_s=FITTED_S), 0, SILENT)
 
 
 def result(*faults: Fault) -> Detection:

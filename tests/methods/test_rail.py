@@ -11,7 +11,7 @@ from sensorfault.logs.epochs import RANGE
 from sensorfault.logs.table import Log, LogError
 from sensorfault.methods.fit import fit
 from sensorfault.methods.gnss import needs
-from sensorfault.methods.gnss.rail import RECIPE
+from sensorfault.methods.gnss.satellite_bank import RECIPE
 from sensorfault.runtime.detect import detect
 from sensorfault.simulation.train import ride
 from sensorfault.training.session import Session
@@ -35,7 +35,7 @@ def _ten(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_satellite_that_lies_is_named_and_nobody_else() -> None:
-    model = fit(small(ride(110.0, 3, imu_hz=10).log), "rail", held_out=0.0)
+    model = fit(small(ride(110.0, 3, imu_hz=10).log), "satellite-bank", held_out=0.0)
     assert model.monitor.residual.bank
     at_once, later = model.summary["smallest_step_m"].values()
     assert 5.0 < later < at_once < 100.0
@@ -53,8 +53,10 @@ def test_a_satellite_that_lies_is_named_and_nobody_else() -> None:
 
 def test_what_it_needs_is_said_in_one_sentence() -> None:
     log = small(ride(30.0, 3, imu_hz=10).log)
-    with pytest.raises(LogError, match=r"has 30 epochs with 4 satellites, but rail needs 60; give a longer log\.$"):
+    with pytest.raises(
+        LogError, match=r"has 30 epochs with 4 satellites, but satellite-bank needs 60; give a longer log\.$"
+    ):
         RECIPE.build(log, 0, Session())
     empty = replace(log, value=np.where(True, np.nan, log.value), fresh=log.fresh & False)
-    assert "rail needs" in RECIPE.lacks(log)
+    assert "satellite-bank needs" in RECIPE.lacks(log)
     assert RECIPE.lacks(empty)

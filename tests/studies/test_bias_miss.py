@@ -31,7 +31,7 @@ METRES = 15.0
 def fitted(folder: Path) -> tuple[Model, Log]:
     log = read(folder)
     cut = float(log.time[0]) + study.LEARN * log.duration_s
-    return recipe("car").build(log.between(end_s=cut), 0, Session()), log.between(cut)
+    return recipe("car-composite").build(log.between(end_s=cut), 0, Session()), log.between(cut)
 
 
 def result(folder: Path, *faults: Fault) -> list[Event]:

@@ -45,18 +45,18 @@ def command(
     json_path: str | None,
 ) -> None:
     """Fit a method on a healthy log, and count its false alarms on the part held out."""
-    from sensorfault.relations.events import METHOD
+    from sensorfault.runtime.names import is_default, recipe_of, vehicle_of
 
-    if method != METHOD:
+    if not is_default(method):
         from sensorfault.methods.catalog import recipe
 
-        recipe(method)
+        method = recipe(recipe_of(method)).name
     outputs.check_outputs([out, json_path, checkpoint], [log, vehicle])
     table = reading.read_log(log, vehicle, rate_hz=rate_hz)
     if until_s is not None:
         table = table.between(end_s=until_s)
-    if method == METHOD:
-        if _compare(table, out, json_path):
+    if is_default(method):
+        if _compare(table, vehicle_of(method), out, json_path):
             return
         method = fitting.INERTIAL
         show.say(f"No two of its sensors measure the same: {method} is fitted, which judges each channel by itself.")
@@ -77,13 +77,13 @@ def command(
     show.write_json(json_path, {"model": str(target), "method": method, "watched": watched, **model.summary})
 
 
-def _compare(log: "Log", out: Path | None, json_path: str | None) -> bool:
+def _compare(log: "Log", vehicle: str, out: Path | None, json_path: str | None) -> bool:
     """Fit the default method: what the sensors of a healthy log say of each other. False if no two say the same."""
     from sensorfault.runtime.compared import NothingToCompare, comparison_of
     from sensorfault.runtime.saved import write_comparison
 
     try:
-        comparison = comparison_of(log)
+        comparison = comparison_of(log, vehicle=vehicle)
     except NothingToCompare:
         return False
     target = out or Path(f"{safe_name(log.name)}.sensorfault")

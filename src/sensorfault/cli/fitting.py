@@ -22,7 +22,7 @@ class Choice:
     """What the user chose: a model file; or a method, and the share of the log to fit it on. No method: auto.
 
     Raises:
-        LogError: the share is not one.
+        LogError: the share is not one, or no method has that name.
     """
 
     path: Path | None
@@ -35,6 +35,12 @@ class Choice:
 
         if not 0.05 <= self.learn <= 0.95:  # click accepts NaN as a number
             raise LogError(f"--learn is {self.learn:g}; give the share of the log to fit on, 0.05 to 0.95.")
+        from sensorfault.runtime.names import is_default, recipe_of
+
+        if not is_default(self.method):
+            from sensorfault.methods.catalog import recipe
+
+            recipe(recipe_of(str(self.method)))
 
 
 def known_by(choice: Choice) -> "VehicleFile | None":
@@ -52,15 +58,23 @@ def comparison_of(choice: Choice) -> "Comparison | None":
     """
     from sensorfault.logs import LogError
     from sensorfault.relations.events import METHOD
+    from sensorfault.relations.vehicle_class import FLYING, class_named
     from sensorfault.runtime.compared import Comparison
+    from sensorfault.runtime.names import is_default, vehicle_of
     from sensorfault.runtime.saved import method_of, read_comparison
 
     if choice.path is None:
-        return Comparison() if choice.method in (None, METHOD) else None
+        return Comparison(vehicle=vehicle_of(choice.method)) if is_default(choice.method) else None
     method = method_of(choice.path)
-    if choice.method not in (None, method):
+    if choice.method not in (None, method) and not (method == METHOD and is_default(choice.method)):
         raise LogError(f"{choice.path} is a model of {method}, not of {choice.method}; leave out --method, or --model.")
-    return read_comparison(choice.path) if method == METHOD else None
+    if method != METHOD:
+        return None
+    found = read_comparison(choice.path)
+    named, own = vehicle_of(choice.method), found.learned.vehicle if found.learned else ""
+    if named and class_named(named, {}) != own and (named != "drone" or own not in FLYING):
+        raise LogError(f"{choice.path} is a model of a {own}, not of a {named}; leave out --method, or --model.")
+    return found
 
 
 def model_or_fit(choice: Choice) -> "Model | Fit":
@@ -75,8 +89,9 @@ def model_or_fit(choice: Choice) -> "Model | Fit":
     def fitted(log: "Log") -> "Model":
         from sensorfault.methods.catalog import DEFAULT
         from sensorfault.methods.fit import fit
+        from sensorfault.runtime.names import recipe_of
 
-        method = choice.method or DEFAULT
+        method = recipe_of(choice.method or DEFAULT)
         with show.progress() as bar:
             task = bar.add_task(f"fitting {method}", total=None)
             model = fit(log, method, held_out=0.0, seed=choice.seed)

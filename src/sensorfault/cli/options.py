@@ -21,7 +21,10 @@ method_option = click.option(
     "--method", default=None, help="One of 'sensorfault methods'.  [default: relative-conditioning]"
 )
 fitting_method_option = click.option(
-    "--method", default="auto", show_default=True, help="One of 'sensorfault methods'."
+    "--method",
+    default="auto",
+    show_default=True,
+    help="auto, car, drone, ... or another of 'sensorfault methods --all'.",
 )
 detecting_method_option = click.option(
     "--method",

@@ -51,7 +51,6 @@ class _Table:
     back: _Rows = field(default_factory=_Rows)
     behind: _Rows = field(default_factory=_Rows)
 
-
     def mended(self, source: Source, time: np.ndarray) -> tuple[Source, np.ndarray]:
         """The next rows and their times, without the jumps of the clock; the rows keep what is added to their times."""
         if np.isnan(self.begun_s) and len(time):
@@ -115,7 +114,9 @@ class Late:
         """
         said = []
         for table in self._tables.values():
-            said += [f"{table.name}: {one.said}; from there on it is continued without the jump." for one in table.jumps]
+            said += [
+                f"{table.name}: {one.said}; from there on it is continued without the jump." for one in table.jumps
+            ]
             back = f"time '{table.column}' goes back (first {table.back.first})"
             if table.back.count > HOPELESS * table.rows:
                 raise LogError(

@@ -1,6 +1,7 @@
 """Name -> recipe. A recipe registers itself: any module in a family below that has a RECIPE, or RECIPES, is found."""
 
 from collections.abc import Iterator
+from difflib import get_close_matches
 from importlib import import_module
 from pkgutil import iter_modules
 
@@ -9,6 +10,7 @@ from sensorfault.logs.table import LogError
 from sensorfault.methods import cards
 from sensorfault.methods.recipe import Recipe
 from sensorfault.runtime import former
+from sensorfault.runtime.names import CHANNELS, VEHICLES
 
 FAMILIES = ("inertial", "position", "height", "ranging", "gnss", "arm", "composite")  # as the catalog lists them
 DEFAULT = "relative-conditioning"
@@ -42,5 +44,8 @@ def recipe(name: str) -> Recipe:
     """
     found = METHODS.get(former.METHODS.get(name, name))
     if found is None:
-        raise LogError(f"no method is called '{name}'; take one of {', '.join(METHODS)}.")
+        known = (*VEHICLES, *CHANNELS, *METHODS)
+        near = [one for one in known if one.startswith(name)][:3] or get_close_matches(name, known, 3)
+        like = f"did you mean {' or '.join(near)}?" if near else f"take one of {', '.join((*VEHICLES, *CHANNELS))}."
+        raise LogError(f"no method is called '{name}'; {like} `sensorfault methods --all` lists all of them.")
     return found

@@ -15,6 +15,7 @@ from sensorfault.runtime.compared import Comparison, NothingToCompare, compariso
 from sensorfault.runtime.described import described
 from sensorfault.runtime.detect import detect
 from sensorfault.runtime.model import Model
+from sensorfault.runtime.names import is_default, recipe_of, vehicle_of
 from sensorfault.training.session import Session
 
 HELD_OUT = 0.3
@@ -23,7 +24,7 @@ HELD_OUT = 0.3
 @overload
 def fit(  # type: ignore[overload-overlap]
     log: Log,
-    method: Literal["auto"] = "auto",
+    method: Literal["auto", "car", "drone", "underwater", "rail"] = "auto",
     held_out: float = HELD_OUT,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
@@ -64,7 +65,8 @@ def fit(
     Args:
         log: T rows, C channels in SI on one clock, taken as healthy.
         method: "auto", which compares the sensors with each other and uses the whole log (where no two measure the
-            same, it is relative-conditioning); or a name of `METHODS`.
+            same, it is relative-conditioning); "car", "drone", "underwater" or "rail", which are the same for a
+            vehicle of that class; "imu", "arm", or a name of `METHODS`.
         held_out: share of the log.
         seed: of all chance in the fit; the same seed gives the same model.
         progress: called with a sentence.
@@ -80,11 +82,12 @@ def fit(
         raise LogError(f"held_out is {held_out:g}; give the share of the log to hold out for testing, 0 to 0.9.")
     if len(log) < 2:
         raise LogError(f"{log.name} has {len(log)} rows; give a log of at least a few seconds.")
-    if method == AUTO:
+    if is_default(method):
         try:
-            return comparison_of(log)
+            return comparison_of(log, vehicle=vehicle_of(method))
         except NothingToCompare:
             method = DEFAULT
+    method = recipe_of(method)
     log = log.measurements()
     session = Session(progress, checkpoint) if progress else Session(checkpoint=checkpoint)
     cut = float(log.time[0]) + (1 - held_out) * log.duration_s

@@ -13,7 +13,7 @@ from sensorfault.relations.levels.finding import Finding, runs
 from sensorfault.relations.signals import Signal, signals_of
 from sensorfault.relations.tests_of import Piece, judged
 from sensorfault.relations.usual import Usual
-from sensorfault.relations.vehicle_class import class_of
+from sensorfault.relations.vehicle_class import class_named
 from sensorfault.relations.witnesses import SLOW_FAST_S
 
 SHORTEST_S = 8.0  # a shorter piece compares nothing
@@ -54,8 +54,11 @@ class Judged:
     findings: list[Finding] = field(default_factory=list)
 
 
-def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
-    """Signals, mountings and tests of one log or several of one vehicle, with what is known of it or begins to be."""
+def _prepared(logs: list[Log], learned: limits.Learned | None, name: str) -> Judged:
+    """Signals, mountings and tests of one log or several of one vehicle, with what is known of it or begins to be.
+
+    `name`: the class of the vehicle as a user says it; empty: it is guessed.
+    """
     known = learned or limits.Learned()
     facts_of, lags, mountings = dict(known.facts), dict(known.lags), dict(known.mountings)
     signals: dict[str, Signal] = {}
@@ -63,7 +66,7 @@ def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
     vehicle = known.vehicle
     for log in logs:
         signals, mountings = axes.mounted(signals_of(log), mountings)
-        vehicle = vehicle or class_of(signals)
+        vehicle = vehicle or class_named(name, signals)
         if vehicle != "copter":
             facts_of.setdefault("acceleration.period", SLOW_FAST_S)
         unknown = {role + number for number, m in mountings.items() if m.turn is None for role in axes.INERTIAL}
@@ -83,9 +86,9 @@ def _prepared(logs: list[Log], learned: limits.Learned | None) -> Judged:
     return Judged(vehicle, signals, mountings, pieces, learned or begun, [])
 
 
-def fitted(logs: list[Log]) -> limits.Learned:
-    """What healthy logs of one vehicle teach: usual changes, limits, lags, axes."""
-    result = _prepared(logs, None)
+def fitted(logs: list[Log], name: str = "") -> limits.Learned:
+    """What healthy logs of one vehicle teach: usual changes, limits, lags, axes. `name`: its class, if it is known."""
+    result = _prepared(logs, None, name)
     begun = result.learned
     for piece in result.pieces:
         for fact, value in levels.ranges.largest(piece.grid).items():
@@ -94,9 +97,9 @@ def fitted(logs: list[Log]) -> limits.Learned:
     return replace(learned, mountings=result.mountings, vehicle=result.vehicle)
 
 
-def judge(log: Log, learned: limits.Learned | None = None) -> Judged:
-    """Judge a log. Without `learned` its limits come from the log itself and from its class of vehicle."""
-    result = _prepared([log], learned)
+def judge(log: Log, learned: limits.Learned | None = None, name: str = "") -> Judged:
+    """Judge a log. Without `learned` its limits come from the log itself and from its class of vehicle, `name`."""
+    result = _prepared([log], learned, name)
     pieces, signals, vehicle = result.pieces, result.signals, result.vehicle
     if learned is None:
         begun = result.learned

@@ -7,6 +7,15 @@ from sensorfault.relations.signals import SATELLITES, Signal
 FAST_M_S = 9.0  # a wing does not hover: half of its flight is faster
 CLIMBS_M_S = 1.5  # what flies climbs or sinks faster than this for a twentieth of the time
 CLIMB_S = 5.0
+FLYING = ("copter", "wing")
+
+
+def class_named(name: str, signals: dict[str, Signal]) -> str:
+    """The class that a user names; "drone" is one of two, and an empty name any: then the signals show which."""
+    if name not in ("", "drone"):
+        return name
+    guess = class_of(signals)
+    return guess if not name or guess in FLYING else "copter"
 
 
 def class_of(signals: dict[str, Signal]) -> str:

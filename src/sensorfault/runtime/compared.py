@@ -48,6 +48,7 @@ class Comparison:
         learned: usual changes, limits, lags and facts from healthy logs.
         summary: how it was fitted; for people.
         channels, sensors: of the log it was fitted on, as a live sample has them.
+        vehicle: its class as the user names it, for logs without a model; empty: it is guessed.
     """
 
     learned: Learned | None = None
@@ -55,6 +56,7 @@ class Comparison:
     channels: tuple[Channel, ...] = ()
     sensors: tuple[Sensor, ...] = ()
     method: str = METHOD
+    vehicle: str = ""
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -84,14 +86,14 @@ class Comparison:
         return f"<Comparison {show.comparison_line(self.sensors, self.summary)}>"
 
 
-def comparison_of(*logs: Log) -> Comparison:
-    """What healthy logs of one vehicle teach the default method.
+def comparison_of(*logs: Log, vehicle: str = "") -> Comparison:
+    """What healthy logs of one vehicle teach the default method. `vehicle`: its class; empty: it is guessed.
 
     Raises:
         LogError: no two sensors of it can be compared.
     """
     logs = tuple(log.measurements() for log in logs)
-    learned = fitted(list(logs))
+    learned = fitted(list(logs), vehicle)
     names = ", ".join(log.name for log in logs)
     if not learned.limit:
         raise NothingToCompare(
@@ -113,7 +115,8 @@ def compare(log: Log, comparison: Comparison | None = None) -> Detection:
         raise LogError(f"{log.name} has no rows; give a log that has some.")
     check(log, comparison.description if comparison else None)
     log = log.measurements()
-    found = _detection(log, judge(log, comparison.learned if comparison else None))
+    known = comparison or Comparison()
+    found = _detection(log, judge(log, known.learned, known.vehicle))
     assert found.coverage is not None
     if not found.coverage.compared and not found.coverage.alone:
         raise _nothing(log, found.coverage)
@@ -133,6 +136,7 @@ class ComparingDetector:
 
     def __init__(self, comparison: Comparison | None = None, see: Any = None) -> None:
         self._learned = comparison.learned if comparison else None
+        self._vehicle = comparison.vehicle if comparison else ""
         self._description = comparison.description if comparison else None
         self._see = see
         self._tail: Log | None = None
@@ -146,7 +150,7 @@ class ComparingDetector:
         check(part, self._description)
         part = part.measurements()
         log = part if self._tail is None else _joined(self._tail, part)
-        judged = judge(log, self._learned)
+        judged = judge(log, self._learned, self._vehicle)
         self._learned = self._learned or judged.learned
         found = _detection(log, judged).between(float(part.time[0]))
         self._check(log, found, judged.signals)

@@ -7,4 +7,9 @@ PARTS = {
     "AveragedFreed": "AveragedBaardaW",
     "Standing": "StuckPosition",
 }
-METHODS = {"train": "rail"}
+METHODS = {
+    "train": "satellite-bank",
+    "rail": "satellite-bank",
+    "car": "car-composite",
+    "drone": "drone-composite",
+}

@@ -28,7 +28,7 @@ from sensorfault_studies.data import real
 from sensorfault_studies.findings import Effort, Findings, Row
 
 DRIVES = {"dresden_50hz": "road/dresden_50hz", "drive0708": "road/gnss_imu_drive0708"}
-METHOD = "car"
+METHOD = "car-composite"
 LEARN = 0.6
 BIAS_S, PAUSE_S = 20.0, 8.0
 SIGMAS, METRES = (1.0, 2.0, 5.0), (2.0, 5.0, 15.0)

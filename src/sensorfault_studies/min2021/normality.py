@@ -20,7 +20,7 @@ DRIVES = {"dresden_50hz": "road/dresden_50hz", "drive0708": "road/gnss_imu_drive
 RAV4_WHEELBASE_M = 2.65
 LEARN = 0.6
 METHOD = "bicycle-kalman"
-RIVALS = ("motion-deficit", "side-force", "car")
+RIVALS = ("motion-deficit", "side-force", "car-composite")
 REMARKS = (
     "In the paper the Jarque-Bera statistic stays below 0.34 over a whole test drive. Of windows of 500 independent "
     "normal numbers only one in six does, so such a small maximum shows that the residuals were smoothed, not that "

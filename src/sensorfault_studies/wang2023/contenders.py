@@ -12,7 +12,7 @@ from sensorfault.calibration.means import fit_spread, mean_tape, windows
 from sensorfault.core.monitor import Branch, Monitor
 from sensorfault.core.stage import Stage
 from sensorfault.logs.epochs import Framing
-from sensorfault.methods.gnss import innovation_tests, lof_efd, rail
+from sensorfault.methods.gnss import innovation_tests, lof_efd, satellite_bank
 from sensorfault.methods.gnss.gnss_ins import Filter, monitor, navigation
 from sensorfault.numerics.blocks import enough
 from sensorfault.stages.residual.ins_gnss import InsGnss
@@ -28,10 +28,16 @@ from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.outlier_factor import fit_history
 from sensorfault_studies.wang2023.campaign import SETTLED, Case, flown
 
-NONE, LOF, CHI_SQUARE, ALONE, OURS = "no-exclusion", "lof-efd", "innovation-chi-square", "leave-one-out", "rail"
+NONE, LOF, CHI_SQUARE, ALONE, OURS = (
+    "no-exclusion",
+    "lof-efd",
+    "innovation-chi-square",
+    "leave-one-out",
+    "satellite-bank",
+)
 AIME_S = 10.0, 30.0, 60.0
 CUMULATIVE, FEATURES = (1, 5, 10, 20, 40), (1, 10, 30)  # epochs
-OUR_WINDOWS = tuple(round(one) for one in rail.WINDOWS)
+OUR_WINDOWS = tuple(round(one) for one in satellite_bank.WINDOWS)
 SEED = 0  # of the history
 
 
@@ -94,7 +100,7 @@ def scored(
 ) -> tuple[Means, Float[np.ndarray, "M W"]]:
     """Windows of so many epochs with the spreads of these healthy innovations, and the means."""
     period = how.period_s
-    means = windows(tuple(period * n for n in lengths), period, rail.GAP * period, normalised.shape[2])
+    means = windows(tuple(period * n for n in lengths), period, satellite_bank.GAP * period, normalised.shape[2])
     tape = np.concatenate([mean_tape(means, run[SETTLED:], period)[max(lengths) :] for run in normalised])
     tape = tape.reshape(-1, len(lengths))
     return fit_spread(means, tape), tape

@@ -14,7 +14,7 @@ def whole_drone() -> Case:
     log = fly(1000.0, seed=2, beat_hz=0.0, imu_hz=1.0, gnss_hz=1.0, barometer_hz=1.0).log
     receiver = [f"gnss.{name}" for name in ("latitude", "longitude", "altitude", "north", "east", "down")]
     log = log.select([*(f"gyro.{axis}" for axis in "xyz"), *receiver, "barometer.altitude"])
-    monitor = METHODS["drone"].build(log.between(end_s=600.0), 0, Session()).monitor
+    monitor = METHODS["drone-composite"].build(log.between(end_s=600.0), 0, Session()).monitor
     part = log.between(600.0)
     height, place, speeds = [log.index(f"gnss.{name}") for name in ("altitude", "latitude", "north")]
     lost = {
@@ -23,7 +23,7 @@ def whole_drone() -> Case:
     }
     spike = np.where(np.arange(len(log.channels)) < 3, 10.0, 0.0)
     rows = samples(part.time, part.value, part.fresh)
-    return Case("drone", monitor, rows, lie=spike, back_s=90.0, named=(0, 1, 2), lost=lost)
+    return Case("drone-composite", monitor, rows, lie=spike, back_s=90.0, named=(0, 1, 2), lost=lost)
 
 
-CASES = {"drone": whole_drone}
+CASES = {"drone-composite": whole_drone}

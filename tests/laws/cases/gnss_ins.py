@@ -9,7 +9,7 @@ from laws.case import Case
 from sensorfault.core.monitor import Branch
 from sensorfault.logs.epochs import Framing, framing
 from sensorfault.logs.table import Log
-from sensorfault.methods.gnss import innovation_tests, lof_efd, rail
+from sensorfault.methods.gnss import innovation_tests, lof_efd, satellite_bank
 from sensorfault.methods.gnss.gnss_ins import Filter, healthy, monitor, navigation
 from sensorfault.runtime.runners import samples
 from sensorfault.simulation import pseudorange
@@ -55,7 +55,7 @@ def navigating(name: str) -> Case:
     """
     learned, unseen = _ride(1), _ride(2)
     how = learned.framing
-    residual = navigation(how, Filter(bank=name == rail.NAME))
+    residual = navigation(how, Filter(bank=name == satellite_bank.NAME))
     if name in TESTS:
         branch = TESTS[name](how)
     else:
@@ -74,11 +74,11 @@ def navigating(name: str) -> Case:
 
 
 def _branch(name: str, how: Framing, innovations: np.ndarray) -> Branch:
-    if name == rail.NAME:
-        return rail.branch(how, rail.means(how, innovations), 8.0)
+    if name == satellite_bank.NAME:
+        return satellite_bank.branch(how, satellite_bank.means(how, innovations), 8.0)
     known, factors = lof_efd.history(innovations, 0)
     return lof_efd.branch(how, known, 3 * float(factors.max()))
 
 
-CASES = {name: functools.partial(navigating, name) for name in (rail.NAME, lof_efd.NAME, *TESTS)}
+CASES = {name: functools.partial(navigating, name) for name in (satellite_bank.NAME, lof_efd.NAME, *TESTS)}
 HAVE = {"block": tuple(CASES)}

@@ -31,9 +31,9 @@ def whole_car() -> Case:
     """All of it together: who answers for a channel is the part that knows it best."""
     alone = deficit()
     log = drive(300.0).select(CAR)
-    monitor = METHODS["car"].build(log.between(end_s=240.0), 0, Session()).monitor
+    monitor = METHODS["car-composite"].build(log.between(end_s=240.0), 0, Session()).monitor
     lie = np.concatenate([40 * log.value[:, :6].std(axis=0), alone.lie[6:]])
-    return replace(alone, name="car", monitor=monitor, lie=lie, named=None)
+    return replace(alone, name="car-composite", monitor=monitor, lie=lie, named=None)
 
 
-CASES = {"motion-deficit": deficit, "car": whole_car}
+CASES = {"motion-deficit": deficit, "car-composite": whole_car}

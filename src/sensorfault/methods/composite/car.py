@@ -22,7 +22,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 
 RECIPE = Recipe(
-    name="car",
+    name="car-composite",
     title="Inertial unit by linear conditioning, receiver by motion deficit, motion by bicycle filter and side force",
     source="Min et al. 2021 and the methods that did better in this project's study (`sensorfault reproduce min2021`)",
     false_alarm_rate="one false alarm an hour, extrapolated from the healthy scores of blocks left out of the fit",

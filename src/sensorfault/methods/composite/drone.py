@@ -18,7 +18,7 @@ def _build(log: Log, seed: int, session: Session) -> Model:
 
 
 RECIPE = Recipe(
-    name="drone",
+    name="drone-composite",
     title="Inertial unit and attitude by linear conditioning, heights against each other, position against velocity",
     source="Wang S. et al. and the methods that did better in this project's study (`sensorfault reproduce multistep`)",
     false_alarm_rate="one false alarm an hour for inertial unit and position, extrapolated from healthy scores; "

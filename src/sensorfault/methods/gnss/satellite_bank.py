@@ -22,7 +22,7 @@ from sensorfault.stages.statistic.means import Means
 from sensorfault.stages.threshold.fixed import Fixed
 from sensorfault.training.session import Session
 
-NAME = "rail"
+NAME = "satellite-bank"
 WINDOWS = 1.0, 5.0, 20.0  # epochs
 GAP = 5.0  # a satellite's windows restart after this many epochs without it
 PER_HOUR = 1.0  # false alarms an hour that the limit is set for
