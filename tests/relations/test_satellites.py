@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from relations.drives import changed
+from sensorfault.core.verdicts import FAULT, OK
 from sensorfault.logs.table import Channel, Log, Sensor
 from sensorfault.relations.constellation import solved
 from sensorfault.relations.signals import signals_of
@@ -62,6 +63,15 @@ def test_one_satellite_that_lies_is_named() -> None:
     assert 119.0 <= found.events[0].start_s <= 123.0
     assert found.events[0].end_s is not None
     assert 157.0 <= found.events[0].end_s <= 161.0
+    rows = (lie.time > 125) & (lie.time < 155)
+    names = [sensor.name for sensor in lie.sensors]
+    assert (found.sensor[rows, names.index(liar)] == FAULT).all()
+    seen = [
+        i for i, name in enumerate(names) if f"{name}.corrected_m" in {c.path for c in lie.channels} and name != liar
+    ]
+    assert (found.sensor[rows][:, seen] == OK).mean() > 0.5
+    assert found.coverage is not None
+    assert found.coverage.compared[liar] == ("satellites",)
 
 
 def test_slipping_wheels_are_named_and_no_satellite() -> None:

@@ -68,7 +68,7 @@ def patient(doing: str) -> Iterator[Callable[[float], None]]:
         yield update
 
 
-SHOWN = 40  # events
+SHOWN = 14  # events: an answer is at most a screen
 _NUMBERS = {"peak", "limit", "n", "recall", "chance", "magnitude"}  # columns
 
 

@@ -18,7 +18,7 @@ from sensorfault.relations.events import METHOD, events_of, sensor_of
 from sensorfault.relations.grid import EXACT_S
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
-from sensorfault.relations.signals import Signal
+from sensorfault.relations.signals import RANGE_ROLE, SATELLITES, Signal
 from sensorfault.runtime import show
 from sensorfault.runtime.coverage import Coverage
 from sensorfault.runtime.described import check, described, known, sample
@@ -252,6 +252,9 @@ def _coverage(log: Log, judged: Judged) -> Coverage:
             devices = dict.fromkeys(sensor_of(device, judged.signals) for (device, _), _ in test.relation.blame)
             for one in devices:
                 partners.setdefault(one, {}).update(dict.fromkeys(other for other in devices if other != one))
+    for signal in judged.signals.values():
+        if signal.role == RANGE_ROLE:
+            partners.setdefault(signal.sensor, {})[SATELLITES] = None
     compared = {name: tuple(others) or (name,) for name, others in partners.items()}
     roles = {signal.sensor for signal in judged.signals.values()}
     checked = {s.sensor for s in judged.signals.values() if s.role not in NO_LEVELS} if judged.pieces else set()
@@ -285,6 +288,11 @@ def tested_sensors(log: Log, judged: Judged, sensors: list[str]) -> Bool[np.ndar
             ]
             if any(mine):
                 tested[:, i] |= inside & np.isfinite(score[:, mine]).any(axis=1)[tick]
+    for signal in judged.signals.values():
+        if signal.role == RANGE_ROLE and signal.sensor in sensors:  # held against all other satellites at each epoch
+            last = np.searchsorted(signal.time, log.time + EXACT_S) - 1
+            since = log.time - signal.time[np.maximum(last, 0)]
+            tested[:, sensors.index(signal.sensor)] |= (last >= 0) & (since < 1.5 * signal.period_s)
     return tested
 
 
