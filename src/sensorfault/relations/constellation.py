@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from sensorfault.logs.epochs import ON_L1
 from sensorfault.logs.satellites import satellites
@@ -82,7 +82,7 @@ def solved(log: Log) -> Solved | None:
 
 
 def _least_squares(
-    ahead: Float[np.ndarray, "n S p"], off: Float[np.ndarray, "n S"], there: Float[np.ndarray, "n S"], far: float
+    ahead: Float[np.ndarray, "n S p"], off: Float[np.ndarray, "n S"], there: Bool[np.ndarray, "n S"], far: float
 ) -> Float[np.ndarray, "n p"]:
     """One step for all epochs; a residual beyond `far` pulls with the root of its weight, and one that stands alone not
     at all. An absent clock stays 0.
@@ -102,7 +102,7 @@ def _least_squares(
 def _rates(
     doppler: Float[np.ndarray, "n S"],
     satellite: Float[np.ndarray, "n S 3"],
-    there: Float[np.ndarray, "n S"],
+    there: Bool[np.ndarray, "n S"],
     to: Float[np.ndarray, "n S 3"],
     on_l1: list[bool],
 ) -> Float[np.ndarray, "n 3"]:

@@ -109,7 +109,7 @@ def unwrapped(angle: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
     return out
 
 
-def wrapped(angle: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
+def wrapped(angle: Float[np.ndarray, "n *k"]) -> Float[np.ndarray, "n *k"]:
     """An angle between -pi and pi."""
     return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 

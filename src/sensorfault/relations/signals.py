@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -32,14 +33,14 @@ class Signal:
     time: Float[np.ndarray, " n"]
     value: Float[np.ndarray, "n k"]
 
-    @property
+    @cached_property
     def period_s(self) -> float:
         """The usual time between two measurements [s]."""
         return float(np.median(np.diff(self.time))) if len(self.time) > 1 else float("inf")
 
     def cut(self, start_s: float, end_s: float) -> "Signal":
         """What was measured from start to end, both included."""
-        rows = (self.time >= start_s) & (self.time <= end_s)
+        rows = slice(int(np.searchsorted(self.time, start_s)), int(np.searchsorted(self.time, end_s, side="right")))
         return Signal(self.key, self.role, self.sensor, self.columns, self.time[rows], self.value[rows])
 
 

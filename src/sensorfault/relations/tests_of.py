@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from sensorfault.relations import lag
 from sensorfault.relations.change import WINDOWS_2_S, WINDOWS_S, change
 from sensorfault.relations.grid import Grid, unwrapped, wrapped
 from sensorfault.relations.table import Relation, residual, rows
 
+Numbers = Float[np.ndarray, " T"]
 DRIFTING, LONGEST_DRIFTING_S = {"acc", "side", "steering", "accelerometer"}, 15.0
 LEAST_PERIODS = 1.5  # a window must hold this many measurements of the slower device
 SHORT = 1.3  # a window is used where the piece is this many times longer
@@ -66,7 +67,9 @@ def _windows(relation: Relation) -> tuple[float, ...]:
 
 def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
     """All tests of a piece. `lags`: of each relation [s]; one that is not there is fitted and added."""
-    tests, moved, common = [], [], []
+    tests: list[Test] = []
+    column: list[int] = []  # of the relation of each test
+    pairs: list[tuple[Numbers, Numbers, Numbers]] = []  # difference, left, right of each relation
     duration = grid.end_s - grid.start_s
     for relation in rows(set(grid.signals), courses):
         both = relation.difference(grid)
@@ -77,15 +80,27 @@ def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
             if relation.name not in lags:
                 lags[relation.name] = lag.fitted(left, right, relation.order)
             right = lag.shifted(right, lags[relation.name])
-        d = residual(relation, left, right)
         least_s = LEAST_PERIODS * _slowest_s(grid, relation)
-        for window_s in (window for window in _windows(relation) if window >= least_s):
-            if duration < SHORT * window_s:
-                continue
-            one = change(d, window_s, relation.order)
-            tests.append(Test(relation, window_s))
-            moved.append(wrapped(one) if relation.circular else one)
-            alone = [change(unwrapped(x) if relation.circular else x, window_s, relation.order) for x in (left, right)]
-            common.append(np.minimum(*np.abs(alone)))
-    shape = (len(tests), len(grid.time))
-    return Piece(grid, tuple(tests), np.reshape(moved, shape).T, np.reshape(common, shape).T)
+        mine = [window for window in _windows(relation) if window >= least_s and duration >= SHORT * window]
+        tests += [Test(relation, window_s) for window_s in mine]
+        column += [len(pairs)] * len(mine)
+        whole = (unwrapped(left), unwrapped(right)) if relation.circular else (left, right)
+        pairs.append((residual(relation, left, right), *whole))
+    return Piece(grid, tuple(tests), *_changes(tests, np.array(column, int), pairs, len(grid.time)))
+
+
+def _changes(
+    tests: list[Test], column: Int[np.ndarray, " K"], pairs: list[tuple[Numbers, Numbers, Numbers]], ticks: int
+) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, "T K"]]:
+    """How far the witnesses of each test moved apart, and how far both moved; all of one window at once."""
+    moved, common = np.empty((ticks, len(tests))), np.empty((ticks, len(tests)))
+    d, left, right = (np.stack(x, axis=1) for x in zip(*pairs, strict=True)) if pairs else (common,) * 3
+    shape = [(test.window_s, test.relation.order) for test in tests]
+    for window_s, order in dict.fromkeys(shape):
+        mine = [k for k, one in enumerate(shape) if one == (window_s, order)]
+        here = column[mine]
+        moved[:, mine] = change(d[:, here], window_s, order)
+        common[:, mine] = np.minimum(*(np.abs(change(x[:, here], window_s, order)) for x in (left, right)))
+    circular = [k for k, test in enumerate(tests) if test.relation.circular]
+    moved[:, circular] = wrapped(moved[:, circular])
+    return moved, common

@@ -84,7 +84,7 @@ class ComparingLive:
         return self._update(list(found))
 
     def _set_verdicts(self, log: Log, judged: Judged, going: list[Event]) -> None:
-        tested = tested_sensors(log, judged, self._names)[-1]
+        tested = tested_sensors(log.time[-1:], judged, self._names)[0]
         self.sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
         for event in going:
             if event.sensor in self._names:
