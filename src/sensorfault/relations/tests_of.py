@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from sensorfault.relations import lag
 from sensorfault.relations.change import WINDOWS_2_S, WINDOWS_S, change
@@ -35,17 +35,32 @@ class Test:
 
 
 @dataclass(frozen=True)
+class Pair:
+    """The two witnesses of a relation on T ticks, angles without jumps, and the windows over which they are compared.
+
+    `apart`: left minus right.
+    """
+
+    relation: Relation
+    windows_s: tuple[float, ...]
+    apart: Numbers
+    left: Numbers
+    right: Numbers
+
+
+@dataclass(frozen=True)
 class Piece:
     """The K tests of a piece on its T ticks; NaN where a test has nothing to compare.
 
     `moved`: how far the two witnesses moved apart. `common`: how far both moved, by the one that moved less: no single
-    liar makes it larger.
+    liar makes it larger. `pairs`: what they were made of.
     """
 
     grid: Grid
     tests: tuple[Test, ...]
     moved: Float[np.ndarray, "T K"]
     common: Float[np.ndarray, "T K"]
+    pairs: tuple[Pair, ...] = ()
 
 
 def _slowest_s(grid: Grid, relation: Relation) -> float:
@@ -67,40 +82,46 @@ def _windows(relation: Relation) -> tuple[float, ...]:
 
 def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
     """All tests of a piece. `lags`: of each relation [s]; one that is not there is fitted and added."""
-    tests: list[Test] = []
-    column: list[int] = []  # of the relation of each test
-    pairs: list[tuple[Numbers, Numbers, Numbers]] = []  # difference, left, right of each relation
-    duration = grid.end_s - grid.start_s
+    pairs = []
     for relation in rows(set(grid.signals), courses):
         both = relation.difference(grid)
         if both is None or np.isfinite(both[0] - both[1]).sum() < 10:
             continue
-        left, right = both
-        if relation.lagged:
-            if relation.name not in lags:
-                lags[relation.name] = lag.fitted(left, right, relation.order)
-            right = lag.shifted(right, lags[relation.name])
-        least_s = LEAST_PERIODS * _slowest_s(grid, relation)
-        mine = [window for window in _windows(relation) if window >= least_s and duration >= SHORT * window]
-        tests += [Test(relation, window_s) for window_s in mine]
-        column += [len(pairs)] * len(mine)
-        whole = (unwrapped(left), unwrapped(right)) if relation.circular else (left, right)
-        pairs.append((residual(relation, left, right), *whole))
-    return Piece(grid, tuple(tests), *_changes(tests, np.array(column, int), pairs, len(grid.time)))
+        if relation.lagged and relation.name not in lags:
+            lags[relation.name] = lag.fitted(*both, relation.order)
+        least_s, most_s = LEAST_PERIODS * _slowest_s(grid, relation), (grid.end_s - grid.start_s) / SHORT
+        windows_s = tuple(window_s for window_s in _windows(relation) if least_s <= window_s <= most_s)
+        pairs.append(paired(relation, windows_s, *both, lags))
+    return compared(grid, tuple(pairs))
 
 
-def _changes(
-    tests: list[Test], column: Int[np.ndarray, " K"], pairs: list[tuple[Numbers, Numbers, Numbers]], ticks: int
-) -> tuple[Float[np.ndarray, "T K"], Float[np.ndarray, "T K"]]:
-    """How far the witnesses of each test moved apart, and how far both moved; all of one window at once."""
-    moved, common = np.empty((ticks, len(tests))), np.empty((ticks, len(tests)))
-    d, left, right = (np.stack(x, axis=1) for x in zip(*pairs, strict=True)) if pairs else (common,) * 3
+def paired(
+    relation: Relation, windows_s: tuple[float, ...], left: Numbers, right: Numbers, lags: dict[str, float]
+) -> Pair:
+    """Two witnesses, the right one as late as the left."""
+    if relation.lagged:
+        right = lag.shifted(right, lags[relation.name])
+    apart = residual(relation, left, right)
+    if relation.circular:
+        left, right = unwrapped(left), unwrapped(right)
+    return Pair(relation, windows_s, apart, left, right)
+
+
+def compared(grid: Grid, pairs: tuple[Pair, ...]) -> Piece:
+    """Each pair over each of its windows; all of one window at once."""
+    tests = tuple(Test(pair.relation, window_s) for pair in pairs for window_s in pair.windows_s)
+    of = np.repeat(np.arange(len(pairs)), [len(pair.windows_s) for pair in pairs])
+    moved, common = np.empty((2, len(grid.time), len(tests)))
+    if tests:
+        apart, left, right = (
+            np.stack([getattr(pair, name) for pair in pairs], axis=1) for name in ("apart", "left", "right")
+        )
     shape = [(test.window_s, test.relation.order) for test in tests]
     for window_s, order in dict.fromkeys(shape):
         mine = [k for k, one in enumerate(shape) if one == (window_s, order)]
-        here = column[mine]
-        moved[:, mine] = change(d[:, here], window_s, order)
+        here = of[mine]
+        moved[:, mine] = change(apart[:, here], window_s, order)
         common[:, mine] = np.minimum(*(np.abs(change(x[:, here], window_s, order)) for x in (left, right)))
     circular = [k for k, test in enumerate(tests) if test.relation.circular]
     moved[:, circular] = wrapped(moved[:, circular])
-    return moved, common
+    return Piece(grid, tests, moved, common, pairs)
