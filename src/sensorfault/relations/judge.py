@@ -100,16 +100,30 @@ def fitted(logs: list[Log], name: str = "") -> limits.Learned:
 def judge(log: Log, learned: limits.Learned | None = None, name: str = "") -> Judged:
     """Judge a log. Without `learned` its limits come from the log itself and from its class of vehicle, `name`."""
     result = _prepared([log], learned, name)
-    pieces, signals, vehicle = result.pieces, result.signals, result.vehicle
+    pieces, vehicle = result.pieces, result.vehicle
     if learned is None:
         begun = result.learned
         own = limits.of_log(pieces, vehicle, begun.lags, begun.facts)
         result.learned = replace(own, mountings=result.mountings, vehicle=vehicle)
-    usual = Usual(learned.rates if learned else {})
-    end_s = _impact(signals)
-    for piece in pieces:
+    found = [list(levels.findings(piece.grid, vehicle)) for piece in pieces]
+    return scored(result, learned.rates if learned else {}, found)
+
+
+def scored(result: Judged, rates: dict[str, float], by_level: list[list[Finding]], end_s: float = np.inf) -> Judged:
+    """Add scores, episodes and findings to prepared pieces.
+
+    Args:
+        result: pieces with their tests.
+        rates: the usual rates of healthy drives; none without a model.
+        by_level: what the levels found in each piece.
+        end_s: nothing later is judged, nor what follows an impact.
+    """
+    pieces, signals, vehicle = result.pieces, result.signals, result.vehicle
+    usual = Usual(rates)
+    end_s = min(end_s, impact(signals))
+    for piece, all_found in zip(pieces, by_level, strict=True):
         score, limit = _scores(piece, result.learned, usual.changes(piece), vehicle)
-        found = [one for one in levels.findings(piece.grid, vehicle) if one.start_s < end_s]
+        found = [one for one in all_found if one.start_s < end_s]
         _leave_out(piece, score, found)
         if np.isfinite(end_s):
             score[piece.grid.time > end_s] = np.nan
@@ -120,7 +134,7 @@ def judge(log: Log, learned: limits.Learned | None = None, name: str = "") -> Ju
     return result
 
 
-def _impact(signals: dict[str, Signal]) -> float:
+def impact(signals: dict[str, Signal]) -> float:
     """When the vehicle hit something hard [s]; infinite if it did not."""
     hits = [s.time[np.linalg.norm(s.value, axis=1) > IMPACT] for s in signals.values() if s.role == "accelerometer"]
     hits = [hit[0] for hit in hits if len(hit)]

@@ -35,7 +35,7 @@ def limits(
     both witnesses moved further than in the past, the narrower one widens by how much further.
     """
     limit = np.broadcast_to(fixed, moved.shape).copy()
-    motion = {role: found for role in STATES if (found := _motion(piece.grid, role)) is not None}
+    motion = {role: motion_of(piece.grid, role) for role in STATES if role in piece.grid}
     size = round(BLOCK_S / STEP_S)
     block = np.arange(len(moved)) // size
     for (hold, shown), mine in _alike(piece, motion).items():
@@ -91,10 +91,12 @@ def _running_max(x: Float[np.ndarray, " T"], width: int) -> Float[np.ndarray, " 
     return np.asarray(np.maximum(most[: len(x)], most[width - span : width - span + len(x)]))
 
 
-def _motion(grid: Grid, role: str) -> Float[np.ndarray, " T"] | None:
+def motion_of(grid: Grid, role: str) -> Float[np.ndarray, " T"]:
     """How much the vehicle moves by the first sensor of a role: its rms over the last second, without gravity."""
-    if role not in grid:
-        return None
+    return grid.keep(f"motion {role}", lambda: _motion(grid, role))
+
+
+def _motion(grid: Grid, role: str) -> Float[np.ndarray, " T"]:
     signal: Signal = grid.signals[role]
     length = np.linalg.norm(signal.value, axis=1)
     square = np.r_[0.0, np.cumsum(np.nan_to_num(length - GRAVITY if role == "accelerometer" else length) ** 2)]

@@ -38,11 +38,12 @@ class Test:
 class Pair:
     """The two witnesses of a relation on T ticks, angles without jumps, and the windows over which they are compared.
 
-    `apart`: left minus right.
+    `lag_s`: how much later the left one is. `apart`: left minus right.
     """
 
     relation: Relation
     windows_s: tuple[float, ...]
+    lag_s: float
     apart: Numbers
     left: Numbers
     right: Numbers
@@ -91,20 +92,17 @@ def judged(grid: Grid, courses: bool, lags: dict[str, float]) -> Piece:
             lags[relation.name] = lag.fitted(*both, relation.order)
         least_s, most_s = LEAST_PERIODS * _slowest_s(grid, relation), (grid.end_s - grid.start_s) / SHORT
         windows_s = tuple(window_s for window_s in _windows(relation) if least_s <= window_s <= most_s)
-        pairs.append(paired(relation, windows_s, *both, lags))
+        pairs.append(paired(relation, windows_s, lags[relation.name] if relation.lagged else 0.0, *both))
     return compared(grid, tuple(pairs))
 
 
-def paired(
-    relation: Relation, windows_s: tuple[float, ...], left: Numbers, right: Numbers, lags: dict[str, float]
-) -> Pair:
+def paired(relation: Relation, windows_s: tuple[float, ...], lag_s: float, left: Numbers, right: Numbers) -> Pair:
     """Two witnesses, the right one as late as the left."""
-    if relation.lagged:
-        right = lag.shifted(right, lags[relation.name])
+    right = lag.shifted(right, lag_s)
     apart = residual(relation, left, right)
     if relation.circular:
         left, right = unwrapped(left), unwrapped(right)
-    return Pair(relation, windows_s, apart, left, right)
+    return Pair(relation, windows_s, lag_s, apart, left, right)
 
 
 def compared(grid: Grid, pairs: tuple[Pair, ...]) -> Piece:
