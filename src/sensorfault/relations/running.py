@@ -13,12 +13,14 @@ from sensorfault.relations.levels.finding import Finding
 from sensorfault.relations.limits import Learned
 from sensorfault.relations.signals import Signal, gone_on
 from sensorfault.relations.tests_of import Pair, compared, paired
+from sensorfault.relations.usual import Usual
 
 KEPT_S = 80.0  # the longest window, and what comes before it
 AGAIN_S = 60.0  # so often the last KEPT_S are judged as a whole: a sensor may have begun
 RECENT_S, ALIGNED_S = 24.0, 2.0  # what is compared again is so long, and begins at a multiple of this
 EDGE_S, NEW_S = 1.6, 3.0  # its first ticks lack what came before; the last ones lacked what came after
 SLOWEST_S = 1.1  # a slower sensor says too little in that time
+NAMES_KEPT = 100
 FAR_TICKS = 5  # a shift is the mean of so many ticks
 
 
@@ -35,6 +37,7 @@ class Running:
         self._impact_s = np.inf
         self._last: Judged | None = None
         self._raw: dict[str, Signal] = {}  # of the last KEPT_S, as mounted
+        self._usual: Float[np.ndarray, "T K"] = np.zeros((0, 0))
         self._lasting: dict[str, Finding] = {}
 
     def whole(self, log: Log) -> Judged:
@@ -45,6 +48,7 @@ class Running:
         self._lasting = {}
         self._raw = judged.signals
         self._last = judged if _goes_on(judged, self._end_s) else None
+        self._usual = Usual(self._learned.rates).changes(judged.pieces[-1]) if self._last else np.zeros((0, 0))
         self._remember(judged)
         return judged
 
@@ -73,8 +77,11 @@ class Running:
         named = {one.device for one in found if one.lasting}
         found += [one for device, one in self._lasting.items() if device not in named]
         self._impact_s = min(self._impact_s, impact(grid.signals))
-        judged = Judged(last.vehicle, self._raw, last.mountings, [compared(going, pairs)], last.learned, [])
-        self._last = scored(judged, self._learned.rates, [found], self._impact_s)
+        piece = compared(going, pairs)
+        self._usual = Usual(self._learned.rates).changes(piece, self._usual[:keep])
+        judged = Judged(last.vehicle, self._raw, last.mountings, [piece], last.learned, [])
+        judged.names = last.names if len(last.names) < NAMES_KEPT else {}
+        self._last = scored(judged, [self._usual], [found], self._impact_s)
         self._remember(self._last)
         return self._last
 
