@@ -196,7 +196,7 @@ def _episodes(
 
 def _over(score: Float[np.ndarray, "T K"]) -> np.ndarray:
     """Ticks at which some test is over its limit."""
-    return np.asarray(np.nan_to_num(np.abs(score)).max(axis=1, initial=0.0) > 1)
+    return np.asarray((np.abs(score) > 1).any(axis=1))
 
 
 def _distrusted(alarm: np.ndarray, over: np.ndarray) -> np.ndarray:
@@ -235,10 +235,10 @@ def _by_the_attitude(piece: Piece, score: Float[np.ndarray, "n K"], named: Named
 def _attitude_alone(piece: Piece, score: Float[np.ndarray, "T K"]) -> np.ndarray:
     """Ticks at which two others or more contradict the attitude."""
     partners: dict[str, np.ndarray] = {}
+    over = np.abs(score) > 1
     for k, test in enumerate(piece.tests):
         other = next((device for (device, _), _ in test.relation.blame if device != "attitude"), "")
-        now = np.nan_to_num(np.abs(score[:, k])) > 1
-        partners[other] = partners.get(other, np.zeros(len(now), bool)) | now
+        partners[other] = partners.get(other, False) | over[:, k]
     return sum((p.astype(int) for p in partners.values()), np.zeros(len(piece.grid.time), int)) >= 2
 
 

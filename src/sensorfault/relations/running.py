@@ -17,11 +17,10 @@ from sensorfault.relations.usual import Usual
 
 KEPT_S = 80.0  # the longest window, and what comes before it
 AGAIN_S = 60.0  # so often the last KEPT_S are judged as a whole: a sensor may have begun
-RECENT_S, ALIGNED_S = 24.0, 2.0  # what is compared again is so long, and begins at a multiple of this
+RECENT_S, ALIGNED_S = 16.0, 2.0  # what is compared again is so long, and begins at a multiple of this
 EDGE_S, NEW_S = 1.6, 3.0  # its first ticks lack what came before; the last ones lacked what came after
 SLOWEST_S = 1.1  # a slower sensor says too little in that time
 NAMES_KEPT = 100
-FAR_TICKS = 5  # a shift is the mean of so many ticks
 
 
 class Running:
@@ -135,15 +134,10 @@ def _on(
 ) -> Float[np.ndarray, " T"]:
     """The new ticks after the old ones, shifted by what both say of the ticks that they share."""
     edge = first + round(EDGE_S / STEP_S)
-    tick = np.arange(edge, keep)
     shift = old[edge:keep] - new[edge - first : keep - first]
-    there = np.isfinite(shift)
-    tick, shift = tick[there], shift[there]
-    after = np.arange(keep, first + len(new))
-    by: Float[np.ndarray, " a"] = np.zeros(len(after))
-    if order == 1 and len(shift):
-        by += shift[-FAR_TICKS:].mean()
-    elif len(shift) > FAR_TICKS:
-        slope, level = np.polyfit(tick - keep, shift, 1)
-        by += level + slope * (after - keep)
+    there = np.flatnonzero(np.isfinite(shift))
+    by = shift[there[-1]] if len(there) else 0.0
+    if order == 2 and len(there) > 1:
+        slope = (by - shift[there[0]]) / (there[-1] - there[0])
+        by = by + slope * np.arange(keep - edge - there[-1], first + len(new) - edge - there[-1])
     return np.concatenate([old[:keep], new[keep - first :] + by])
