@@ -138,6 +138,8 @@ def _on(
     there = np.flatnonzero(np.isfinite(shift))
     by = shift[there[-1]] if len(there) else 0.0
     if order == 2 and len(there) > 1:
-        slope = (by - shift[there[0]]) / (there[-1] - there[0])
+        # nothing is integrated over a hole: the lines before and after it have one slope, but are not one line
+        run = max(np.split(there, np.flatnonzero(np.diff(there) > 1) + 1), key=len)
+        slope = (shift[run[-1]] - shift[run[0]]) / max(run[-1] - run[0], 1)
         by = by + slope * np.arange(keep - edge - there[-1], first + len(new) - edge - there[-1])
     return np.concatenate([old[:keep], new[keep - first :] + by])
