@@ -91,9 +91,12 @@ def _running_max(x: Float[np.ndarray, " T"], width: int) -> Float[np.ndarray, " 
     return np.asarray(np.maximum(most[: len(x)], most[width - span : width - span + len(x)]))
 
 
-def motion_of(grid: Grid, role: str) -> Float[np.ndarray, " T"]:
-    """How much the vehicle moves by the first sensor of a role: its rms over the last second, without gravity."""
-    return grid.keep(f"motion {role}", lambda: _motion(grid, role))
+def motion_of(grid: Grid, role: str, known: Float[np.ndarray, " T"] | None = None) -> Float[np.ndarray, " T"]:
+    """How much the vehicle moves by the first sensor of a role: its rms over the last second, without gravity.
+
+    `known`: what it is, so that it need not be worked out.
+    """
+    return grid.keep(f"motion {role}", lambda: _motion(grid, role) if known is None else known)
 
 
 def _motion(grid: Grid, role: str) -> Float[np.ndarray, " T"]:

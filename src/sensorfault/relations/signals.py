@@ -178,7 +178,7 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
         return
     if role in _INERTIAL and np.median(np.diff(log.time[new])) > SELDOM_S:
         return
-    value = log.value[np.ix_(new, mine)]
+    value = log.value[np.flatnonzero(new)[:, None], mine]
     if role == "barometer" and log.channels[mine[0]].name == "pressure" and not 2e4 < np.median(value) < 1.2e5:
         return  # a differential pressure, not that of the air
     names = tuple(log.channels[i].name for i in mine)
@@ -201,7 +201,7 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
 def gone_on(signal: Signal, log: Log) -> Signal:
     """What the same device measured in later rows, in the same convention."""
     new = _measured(log, signal.sensor, signal.role, signal.columns)
-    value = log.value[np.ix_(new, list(signal.columns))]
+    value = log.value[np.flatnonzero(new)[:, None], list(signal.columns)]
     names = tuple(log.channels[i].name for i in signal.columns)
     return replace(signal, time=log.time[new], value=_convention(signal.role, names, value, signal.zero))
 

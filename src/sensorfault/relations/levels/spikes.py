@@ -23,14 +23,17 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
         other = grid.signals.get(OTHER[signal.role] + signal.key.removeprefix(signal.role))
         if other is None or len(signal.time) < 50 or len(other.time) < 50:
             continue
-        score, partner = (grid.keep(f"alone {one.key}", lambda one=one: _score(one)) for one in (signal, other))
-        limit = SPIKE[signal.role]
+        score, partner, limit = _kept(grid, signal), _kept(grid, other), SPIKE[signal.role]
         for first, last in runs(signal.time[1:-1], score > limit, 0.5):
             start_s, end_s = float(signal.time[first + 1]), float(signal.time[last + 1])
             near = (other.time[1:-1] > start_s - NEAR_S) & (other.time[1:-1] < end_s + NEAR_S)
             if near.any() and partner[near].max() < QUIET:
                 peak = float(score[first : last + 1].max())
                 yield Finding(device_of(signal), start_s, end_s, TEST, peak, limit, "spike")
+
+
+def _kept(grid: Grid, signal: Signal) -> Float[np.ndarray, " m"]:
+    return grid.keep(f"alone {signal.key}", lambda: _score(signal))
 
 
 def _score(signal: Signal) -> Float[np.ndarray, " m"]:
