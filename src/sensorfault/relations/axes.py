@@ -59,18 +59,23 @@ def mounted(
     `known`: mountings that a model stores; they are taken as they are.
     """
     mountings: dict[str, Mounting] = {}
-    turned = dict(signals)
     numbers = dict.fromkeys(key.removeprefix(role) for key, s in signals.items() for role in INERTIAL if s.role == role)
     for number in numbers:
         gyro, acc = signals.get(f"gyro{number}"), signals.get(f"accelerometer{number}")
         mounting = _known(known, number) or _mounting(signals, gyro, acc, mountings.get(""))
         mountings[number] = mounting
-        for role in INERTIAL:
-            signal = signals.get(role + number)
-            if signal is not None and mounting.turn is not None:
-                sign = mounting.gravity if role == "accelerometer" else 1.0
-                turned[role + number] = replace(signal, value=sign * signal.value @ mounting.turn.T)
-    return turned, mountings
+    return turned(signals, mountings), mountings
+
+
+def turned(signals: dict[str, Signal], mountings: dict[str, Mounting]) -> dict[str, Signal]:
+    """The signals with every unit turned whose mounting is decided."""
+    found = dict(signals)
+    for (number, mounting), role in product(mountings.items(), INERTIAL):
+        signal = signals.get(role + number)
+        if signal is not None and mounting.turn is not None:
+            sign = mounting.gravity if role == "accelerometer" else 1.0
+            found[role + number] = replace(signal, value=sign * signal.value @ mounting.turn.T)
+    return found
 
 
 def _known(known: dict[str, Mounting] | None, number: str) -> Mounting | None:

@@ -22,9 +22,14 @@ def pieces_of(signals: dict[str, Signal]) -> list[tuple[float, float]]:
     """When something was recorded: start and end of each piece between two pauses [s]."""
     if not signals:
         return []
-    time = np.unique(np.concatenate([signal.time for signal in signals.values()]))
-    period = min(signal.period_s for signal in signals.values())
-    cut = np.flatnonzero(np.diff(time) > max(PAUSE_S, STALE_PERIODS * period))
+    often = min(signals.values(), key=lambda signal: signal.period_s)
+    pause_s = max(PAUSE_S, STALE_PERIODS * often.period_s)
+    times = [signal.time for signal in signals.values()]
+    if (np.diff(often.time) <= pause_s).all():  # then the others matter only before and after it
+        first, last = often.time[[0, -1]]
+        times = [often.time, *(time[(time < first) | (time > last)] for time in times)]
+    time = np.unique(np.concatenate(times))
+    cut = np.flatnonzero(np.diff(time) > pause_s)
     return list(zip(time[np.r_[0, cut + 1]].tolist(), time[np.r_[cut, len(time) - 1]].tolist(), strict=True))
 
 
@@ -109,7 +114,7 @@ def unwrapped(angle: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
     return out
 
 
-def wrapped(angle: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
+def wrapped(angle: Float[np.ndarray, "n *k"]) -> Float[np.ndarray, "n *k"]:
     """An angle between -pi and pi."""
     return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 

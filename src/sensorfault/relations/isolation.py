@@ -52,9 +52,24 @@ class Isolation:
                 found.setdefault((test.relation.family, test.window_s), []).append(k)
         self._groups = [_Group(*key, np.array(group)) for key, group in found.items()]
 
+    @classmethod
+    def known(
+        cls,
+        names: dict[bytes, Named],
+        tests: tuple[Test, ...],
+        limit: Float[np.ndarray, " K"],
+        scores: Float[np.ndarray, "n K"],
+    ) -> Named:
+        """The name that these scores were given before, else the one that they get now."""
+        key = limit.tobytes() + scores.tobytes()
+        if key not in names:
+            names[key] = cls(tests, limit).name(scores)
+        return names[key]
+
     def name(self, scores: Float[np.ndarray, "n K"]) -> Named:
         """Name the device that explains n moments best. `scores`: changes in units of their limits, NaN untested."""
-        costs = {device: float(self._costs(device, scores).mean()) for device in self.devices}
+        groups = [_seen(group, scores) for group in self._groups]
+        costs = {device: float(self._costs(device, groups).mean()) for device in self.devices if groups}
         order = sorted(costs.items(), key=lambda item: item[1])
         if not order:
             return Named(None, ())
@@ -62,44 +77,67 @@ class Isolation:
         rivals = [one for one in order[1:] if one[1] + MORE < RATIO * (best[1] + MORE)]
         return Named(None if rivals else best[0], (best, *rivals))
 
-    def _costs(self, device: str, scores: Float[np.ndarray, "n K"]) -> Float[np.ndarray, " n"]:
+    def _costs(self, device: str, groups: list["_Seen"]) -> Float[np.ndarray, " n"]:
         """What the device's shifts, fitted by least squares in each family and window, leave unexplained."""
         mine = self._mine[device]
-        total = np.zeros(len(scores))
-        used = np.zeros((len(scores), len(mine)), bool)
+        moments = len(groups[0].plain) if groups else 0
+        total = np.zeros(moments)
+        used = np.zeros((moments, len(mine)), bool)
         shown: dict[str, Float[np.ndarray, "n p"]] = {}
-        fast = np.zeros((len(scores), len(mine)))
-        for group in self._groups:
-            z = scores[:, group.tests]
+        fast = np.zeros((moments, len(mine)))
+        for group in groups:
             gain = self._gain[group.tests][:, mine]
-            seen = np.stack(
-                [np.nan_to_num(np.abs(z[:, gain[:, p] != 0])).max(axis=1, initial=0.0) for p in range(len(mine))], 1
-            )
-            tested = np.stack([np.isfinite(z[:, gain[:, p] != 0]).any(axis=1) for p in range(len(mine))], axis=1)
-            seen = np.where(tested, seen, np.nan)
+            if not gain.any():
+                total += group.plain
+                continue
+            seen = np.stack([np.fmax.reduce(group.size[:, own != 0], axis=1, initial=np.nan) for own in gain.T], axis=1)
             shown[group.family] = np.fmax(shown[group.family], seen) if group.family in shown else seen
             fast = np.fmax(fast, seen) if group.window_s <= FAST_S else fast
-            left, large = _left(z, gain)
+            left, large = _left(group, gain)
             used |= large
-            total += (np.maximum(np.abs(left) - DEAD, 0.0) ** 2).sum(axis=1)
+            total += _cost(left)
         further = EXTRA_RECEIVER if device.startswith("gnss") else EXTRA
         total += further * np.maximum(used.sum(axis=1) - 1, 0)
-        return np.asarray(total + QUIET * _quiet(shown, fast))
+        return np.asarray(total + QUIET * _quiet(shown, fast)) if shown else total
 
 
-def _left(
-    z: Float[np.ndarray, "n g"], gain: Float[np.ndarray, "g p"]
-) -> tuple[Float[np.ndarray, "n g"], Bool[np.ndarray, "n p"]]:
+@dataclass(frozen=True)
+class _Seen(_Group):
+    """A group at n moments.
+
+    `size`: its scores without their sign, NaN untested. `z`: its scores, none counted too much, 0 untested. `large`:
+    which of its tests there were, and the moments with the same ones at which some test is not near zero. `plain`: what
+    it costs unexplained.
+    """
+
+    size: Float[np.ndarray, "n g"]
+    z: Float[np.ndarray, "n g"]
+    large: list[tuple[Bool[np.ndarray, " g"], Int[np.ndarray, " m"]]]
+    plain: Float[np.ndarray, " n"]
+
+
+def _seen(group: _Group, scores: Float[np.ndarray, "n K"]) -> _Seen:
+    z = scores[:, group.tests]
+    there, size = np.isfinite(z), np.abs(z)
+    most = np.nan_to_num(size).max(axis=1, initial=0.0)
+    z = np.nan_to_num(z) * np.minimum(1.0, MOST / np.maximum(most, 1e-12))[:, None]
+    over = np.flatnonzero(most > DEAD)
+    patterns, which = np.unique(there[over], axis=0, return_inverse=True)
+    large = [(pattern, over[which.ravel() == i]) for i, pattern in enumerate(patterns)]
+    return _Seen(group.family, group.window_s, group.tests, size, z, large, _cost(z))
+
+
+def _cost(left: Float[np.ndarray, "n g"]) -> Float[np.ndarray, " n"]:
+    return np.asarray((np.maximum(np.abs(left) - DEAD, 0.0) ** 2).sum(axis=1))
+
+
+def _left(group: _Seen, gain: Float[np.ndarray, "g p"]) -> tuple[Float[np.ndarray, "n g"], Bool[np.ndarray, "n p"]]:
     """What is left of a group's scores after the best shifts, and which parts had to be wrong; 0 where untested."""
-    there = np.isfinite(z)
-    size = np.nan_to_num(np.abs(z)).max(axis=1, initial=0.0)
-    z = np.nan_to_num(z) * np.minimum(1.0, MOST / np.maximum(size, 1e-12))[:, None]
+    z = group.z.copy()
     large = np.zeros((len(z), gain.shape[1]), bool)
-    patterns, which = np.unique(there, axis=0, return_inverse=True)
-    for i, pattern in enumerate(patterns):
-        rows = np.flatnonzero((which.ravel() == i) & (size > DEAD))
-        parts = np.flatnonzero(np.abs(gain[pattern]).sum(axis=0)) if pattern.any() else np.zeros(0, int)
-        if not len(rows) or not len(parts):
+    for pattern, rows in group.large:
+        parts = np.flatnonzero(np.abs(gain[pattern]).sum(axis=0))
+        if not len(parts):
             continue
         own = gain[np.ix_(pattern, parts)]
         shift = z[np.ix_(rows, pattern)] @ np.linalg.pinv(own).T

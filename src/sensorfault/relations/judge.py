@@ -42,7 +42,7 @@ class Episode:
 
 @dataclass
 class Judged:
-    """All that was found in a log."""
+    """All that was found in a log. `names`: who explains which scores, as far as that was asked."""
 
     vehicle: str
     signals: dict[str, Signal]
@@ -52,6 +52,7 @@ class Judged:
     scores: list[Float[np.ndarray, "T K"]]
     episodes: list[Episode] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+    names: dict[bytes, Named] = field(default_factory=dict)
 
 
 def _prepared(logs: list[Log], learned: limits.Learned | None, name: str) -> Judged:
@@ -100,27 +101,43 @@ def fitted(logs: list[Log], name: str = "") -> limits.Learned:
 def judge(log: Log, learned: limits.Learned | None = None, name: str = "") -> Judged:
     """Judge a log. Without `learned` its limits come from the log itself and from its class of vehicle, `name`."""
     result = _prepared([log], learned, name)
-    pieces, signals, vehicle = result.pieces, result.signals, result.vehicle
+    pieces, vehicle = result.pieces, result.vehicle
     if learned is None:
         begun = result.learned
         own = limits.of_log(pieces, vehicle, begun.lags, begun.facts)
         result.learned = replace(own, mountings=result.mountings, vehicle=vehicle)
+    found = [list(levels.findings(piece.grid, vehicle)) for piece in pieces]
     usual = Usual(learned.rates if learned else {})
-    end_s = _impact(signals)
-    for piece in pieces:
-        score, limit = _scores(piece, result.learned, usual.changes(piece), vehicle)
-        found = [one for one in levels.findings(piece.grid, vehicle) if one.start_s < end_s]
+    return scored(result, [usual.changes(piece) for piece in pieces], found)
+
+
+def scored(
+    result: Judged, usual: list[Float[np.ndarray, "_ _"]], by_level: list[list[Finding]], end_s: float = np.inf
+) -> Judged:
+    """Add scores, episodes and findings to prepared pieces.
+
+    Args:
+        result: pieces with their tests.
+        usual: the usual changes of each piece.
+        by_level: what the levels found in each piece.
+        end_s: nothing later is judged, nor what follows an impact.
+    """
+    pieces, signals, vehicle = result.pieces, result.signals, result.vehicle
+    end_s = min(end_s, impact(signals))
+    for piece, changes, all_found in zip(pieces, usual, by_level, strict=True):
+        score, limit = _scores(piece, result.learned, changes, vehicle)
+        found = [one for one in all_found if one.start_s < end_s]
         _leave_out(piece, score, found)
         if np.isfinite(end_s):
             score[piece.grid.time > end_s] = np.nan
         result.scores.append(score)
-        result.episodes += _episodes(piece, score, limit)
+        result.episodes += _episodes(piece, score, limit, result.names)
         result.findings += found
     result.findings += levels.silences(signals, [(p.grid.start_s, min(p.grid.end_s, end_s)) for p in pieces], vehicle)
     return result
 
 
-def _impact(signals: dict[str, Signal]) -> float:
+def impact(signals: dict[str, Signal]) -> float:
     """When the vehicle hit something hard [s]; infinite if it did not."""
     hits = [s.time[np.linalg.norm(s.value, axis=1) > IMPACT] for s in signals.values() if s.role == "accelerometer"]
     hits = [hit[0] for hit in hits if len(hit)]
@@ -147,7 +164,9 @@ def _leave_out(piece: Piece, score: Float[np.ndarray, "T K"], found: list[Findin
             score[np.ix_(time > one.start_s, np.array(mine, bool))] = np.nan
 
 
-def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, "T K"]) -> list[Episode]:
+def _episodes(
+    piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.ndarray, "T K"], names: dict[bytes, Named]
+) -> list[Episode]:
     if not piece.tests:
         return []
     by_attitude = np.array([("attitude", "") in dict(test.relation.blame) for test in piece.tests])
@@ -166,7 +185,9 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
             if len(ticks) < LEAST_TICKS:
                 continue
             few = _some(ticks)
-            named = Named(device, ()) if device else Isolation(piece.tests, limit[few].min(axis=0)).name(votes[few])
+            named = (
+                Named(device, ()) if device else Isolation.known(names, piece.tests, limit[few].min(axis=0), votes[few])
+            )
             if named.device is None and not device:
                 named = _by_the_attitude(piece, score[ticks], named)
             episodes.append(_episode(piece, score if device else votes, limit, ticks, named))
@@ -175,7 +196,7 @@ def _episodes(piece: Piece, score: Float[np.ndarray, "T K"], limit: Float[np.nda
 
 def _over(score: Float[np.ndarray, "T K"]) -> np.ndarray:
     """Ticks at which some test is over its limit."""
-    return np.asarray(np.nan_to_num(np.abs(score)).max(axis=1, initial=0.0) > 1)
+    return np.asarray((np.abs(score) > 1).any(axis=1))
 
 
 def _distrusted(alarm: np.ndarray, over: np.ndarray) -> np.ndarray:
@@ -214,10 +235,10 @@ def _by_the_attitude(piece: Piece, score: Float[np.ndarray, "n K"], named: Named
 def _attitude_alone(piece: Piece, score: Float[np.ndarray, "T K"]) -> np.ndarray:
     """Ticks at which two others or more contradict the attitude."""
     partners: dict[str, np.ndarray] = {}
+    over = np.abs(score) > 1
     for k, test in enumerate(piece.tests):
         other = next((device for (device, _), _ in test.relation.blame if device != "attitude"), "")
-        now = np.nan_to_num(np.abs(score[:, k])) > 1
-        partners[other] = partners.get(other, np.zeros(len(now), bool)) | now
+        partners[other] = partners.get(other, False) | over[:, k]
     return sum((p.astype(int) for p in partners.values()), np.zeros(len(piece.grid.time), int)) >= 2
 
 

@@ -4,6 +4,8 @@ A class of vehicles holds good and bad receivers; its limits are wide for the go
 itself shows what is usual for these sensors.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 from jaxtyping import Float, Int
 
@@ -33,40 +35,49 @@ def limits(
     both witnesses moved further than in the past, the narrower one widens by how much further.
     """
     limit = np.broadcast_to(fixed, moved.shape).copy()
-    motion = {role: found for role in STATES if (found := _motion(piece.grid, role)) is not None}
+    motion = {role: motion_of(piece.grid, role) for role in STATES if role in piece.grid}
     size = round(BLOCK_S / STEP_S)
     block = np.arange(len(moved)) // size
-    for k, test in enumerate(piece.tests):
-        suspects = {device.rstrip("234") for (device, _), _ in test.relation.blame}
-        shown = [x for role, x in motion.items() if role not in suspects]
-        if not shown or UNMEASURED & {test.relation.kind, *test.relation.kind.split("|")}:
+    for (hold, shown), mine in _alike(piece, motion).items():
+        now, common = moved[:, mine], piece.common[:, mine]
+        past, count = _largest_before(np.abs(now), block, hold)
+        if not (count >= LEAST_BLOCKS).any():
             continue
-        hold = 1 + int(np.ceil(test.window_s / BLOCK_S))
-        past, count = _largest_before(np.abs(moved[:, k]), block, hold)
-        more = np.ones(len(moved))
-        for x in shown:
-            known, _ = _largest_before(np.where(np.isfinite(moved[:, k]), x, np.nan), block, hold)
-            more = np.fmax(more, _running_max(x, hold * size) / np.maximum(known, 1e-9))
-        enough = count >= LEAST_BLOCKS
-        known, _ = _largest_before(piece.common[:, k], block, hold)
-        further = np.fmax(1.0, piece.common[:, k] / np.maximum(known, 1e-9))
+        more = np.ones(now.shape)
+        for x in (motion[role] for role in shown):
+            known, _ = _largest_before(np.where(np.isfinite(now), x[:, None], np.nan), block, hold)
+            more = np.fmax(more, _running_max(x, hold * size)[:, None] / np.maximum(known, 1e-9))
+        known, _ = _largest_before(common, block, hold)
+        further = np.fmax(1.0, common / np.maximum(known, 1e-9))
         scale = MOST * (1 + 1 / np.maximum(count, 1)) * past * np.fmax(more**2, further)
-        beyond = fixed[k] * np.maximum(more / NOVEL, 1.0) ** 2
-        by_past = np.minimum(beyond, np.maximum(scale, least[k]))
-        limit[enough, k] = by_past[enough]
+        beyond = fixed[mine] * np.maximum(more / NOVEL, 1.0) ** 2
+        by_past = np.minimum(beyond, np.maximum(scale, least[mine]))
+        limit[:, mine] = np.where(count >= LEAST_BLOCKS, by_past, limit[:, mine])
     return limit
 
 
+def _alike(piece: Piece, motion: Iterable[str]) -> dict[tuple[int, tuple[str, ...]], list[int]]:
+    """The tests that wait for as many blocks, and whose motion the same sensors show; none of what nothing shows."""
+    found: dict[tuple[int, tuple[str, ...]], list[int]] = {}
+    for k, test in enumerate(piece.tests):
+        suspects = {device.rstrip("234") for (device, _), _ in test.relation.blame}
+        shown = tuple(role for role in motion if role not in suspects)
+        if shown and not UNMEASURED & {test.relation.kind, *test.relation.kind.split("|")}:
+            found.setdefault((1 + int(np.ceil(test.window_s / BLOCK_S)), shown), []).append(k)
+    return found
+
+
 def _largest_before(
-    x: Float[np.ndarray, " T"], block: Int[np.ndarray, " T"], hold: int
-) -> tuple[Float[np.ndarray, " T"], Int[np.ndarray, " T"]]:
+    x: Float[np.ndarray, "T n"], block: Int[np.ndarray, " T"], hold: int
+) -> tuple[Float[np.ndarray, "T n"], Int[np.ndarray, "T n"]]:
     """The largest of all blocks that lie `hold` or more before each tick's, and how many they are."""
     starts = np.flatnonzero(np.diff(block, prepend=-1))
-    there = np.add.reduceat(np.isfinite(x), starts) > 3
-    largest = np.where(there, np.fmax.reduceat(x, starts), 0.0)
+    there = np.add.reduceat(np.isfinite(x), starts, axis=0, dtype=int) > 3
+    largest = np.where(there, np.fmax.reduceat(x, starts, axis=0), 0.0)
     before = np.maximum(block - hold + 1, 0)
-    most = np.r_[0.0, np.maximum.accumulate(largest)]
-    return most[before], np.r_[0, np.cumsum(there)][before]
+    none = np.zeros((1, x.shape[1]))
+    most = np.concatenate([none, np.maximum.accumulate(largest, axis=0)])
+    return most[before], np.concatenate([none.astype(int), np.cumsum(there, axis=0)])[before]
 
 
 def _running_max(x: Float[np.ndarray, " T"], width: int) -> Float[np.ndarray, " T"]:
@@ -80,10 +91,15 @@ def _running_max(x: Float[np.ndarray, " T"], width: int) -> Float[np.ndarray, " 
     return np.asarray(np.maximum(most[: len(x)], most[width - span : width - span + len(x)]))
 
 
-def _motion(grid: Grid, role: str) -> Float[np.ndarray, " T"] | None:
-    """How much the vehicle moves by the first sensor of a role: its rms over the last second, without gravity."""
-    if role not in grid:
-        return None
+def motion_of(grid: Grid, role: str, known: Float[np.ndarray, " T"] | None = None) -> Float[np.ndarray, " T"]:
+    """How much the vehicle moves by the first sensor of a role: its rms over the last second, without gravity.
+
+    `known`: what it is, so that it need not be worked out.
+    """
+    return grid.keep(f"motion {role}", lambda: _motion(grid, role) if known is None else known)
+
+
+def _motion(grid: Grid, role: str) -> Float[np.ndarray, " T"]:
     signal: Signal = grid.signals[role]
     length = np.linalg.norm(signal.value, axis=1)
     square = np.r_[0.0, np.cumsum(np.nan_to_num(length - GRAVITY if role == "accelerometer" else length) ** 2)]

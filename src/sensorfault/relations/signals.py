@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -22,7 +23,7 @@ class Signal:
 
     `role`: what it is ("gnss.height"). `key`: unique name, the role with the number of the device if it is not the
     first ("gnss2.height"). `sensor`: the log's name of the device. `columns`: its channels in the log. `value`: SI, and
-    local metres (north, east) for positions.
+    local metres (north, east) for positions. `zero`: what these are metres from, as the log has it.
     """
 
     key: str
@@ -31,16 +32,17 @@ class Signal:
     columns: tuple[int, ...]
     time: Float[np.ndarray, " n"]
     value: Float[np.ndarray, "n k"]
+    zero: tuple[float, ...] = ()
 
-    @property
+    @cached_property
     def period_s(self) -> float:
         """The usual time between two measurements [s]."""
         return float(np.median(np.diff(self.time))) if len(self.time) > 1 else float("inf")
 
     def cut(self, start_s: float, end_s: float) -> "Signal":
         """What was measured from start to end, both included."""
-        rows = (self.time >= start_s) & (self.time <= end_s)
-        return Signal(self.key, self.role, self.sensor, self.columns, self.time[rows], self.value[rows])
+        rows = slice(int(np.searchsorted(self.time, start_s)), int(np.searchsorted(self.time, end_s, side="right")))
+        return replace(self, time=self.time[rows], value=self.value[rows])
 
 
 # An autopilot's estimates are no witnesses: they follow the sensors that they are made of.
@@ -85,7 +87,7 @@ def _of_satellites(log: Log) -> dict[str, Signal]:
     if sky is None:
         return {}
     parts = {
-        "gnss.position": _convention("gnss.position", (), sky.degrees),
+        "gnss.position": _convention("gnss.position", (), sky.degrees, _zero("gnss.position", (), sky.degrees)),
         "gnss.height": sky.height[:, None],
         "gnss.velocity": sky.velocity[:, :2],
         "gnss.climb": sky.velocity[:, 2:],
@@ -171,17 +173,17 @@ def _roles(sensor: str, columns: dict[str, int], channels: tuple[Channel, ...]) 
 
 def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tuple[int, ...]) -> None:
     mine = list(columns)
-    new = log.fresh[:, mine].any(axis=1) & (np.abs(log.value[:, mine]) < ABSURD).all(axis=1)
-    if role.startswith("gnss."):
-        new &= _has_fix(log, sensor)
+    new = _measured(log, sensor, role, columns)
     if new.sum() < 5:
         return
     if role in _INERTIAL and np.median(np.diff(log.time[new])) > SELDOM_S:
         return
-    value = log.value[np.ix_(new, mine)]
+    value = log.value[np.flatnonzero(new)[:, None], mine]
     if role == "barometer" and log.channels[mine[0]].name == "pressure" and not 2e4 < np.median(value) < 1.2e5:
         return  # a differential pressure, not that of the air
-    value = _convention(role, tuple(log.channels[i].name for i in mine), value)
+    names = tuple(log.channels[i].name for i in mine)
+    zero = _zero(role, names, value)
+    value = _convention(role, names, value, zero)
     time = log.time[new]
     if _BEGIN.match(role):
         begun = _begun(time, value)
@@ -193,7 +195,22 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
     same = next((s.key for s in found.values() if s.sensor == sensor and s.role.partition(".")[0] == base), None)
     if rest and same is not None:
         key = f"{same.partition('.')[0]}.{rest}"
-    found.setdefault(key, Signal(key, role, sensor, columns, time, value))
+    found.setdefault(key, Signal(key, role, sensor, columns, time, value, zero))
+
+
+def gone_on(signal: Signal, log: Log) -> Signal:
+    """What the same device measured in later rows, in the same convention."""
+    new = _measured(log, signal.sensor, signal.role, signal.columns)
+    value = log.value[np.flatnonzero(new)[:, None], list(signal.columns)]
+    names = tuple(log.channels[i].name for i in signal.columns)
+    return replace(signal, time=log.time[new], value=_convention(signal.role, names, value, signal.zero))
+
+
+def _measured(log: Log, sensor: str, role: str, columns: tuple[int, ...]) -> Bool[np.ndarray, " T"]:
+    """Rows in which a device measured something."""
+    mine = list(columns)
+    new = log.fresh[:, mine].any(axis=1) & (np.abs(log.value[:, mine]) < ABSURD).all(axis=1)
+    return np.asarray(new & _has_fix(log, sensor) if role.startswith("gnss.") else new)
 
 
 def _begun(time: Float[np.ndarray, " n"], value: Float[np.ndarray, "n k"]) -> int:
@@ -212,20 +229,28 @@ def _has_fix(log: Log, sensor: str) -> Bool[np.ndarray, " T"]:
     return np.asarray((log.value[:, place] != 0).any(axis=1)) if place else np.ones(len(log), bool)
 
 
-def _convention(role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"]) -> Float[np.ndarray, "n k"]:
+def _zero(role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"]) -> tuple[float, ...]:
+    """The usual place of a receiver, the first pressure of a barometer."""
+    if role == "gnss.position":
+        return float(np.median(value[:, 0])), float(np.median(value[:, 1]))
+    return (float(np.median(value[:5])),) if role == "barometer" and names[0] == "pressure" else ()
+
+
+def _convention(
+    role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"], zero: tuple[float, ...]
+) -> Float[np.ndarray, "n k"]:
     """Local metres for degrees, up for down, altitude for pressure, one speed for several wheels."""
     if role == "gnss.position":
         latitude, longitude = value.T
-        origin = np.median(latitude), np.median(longitude)
-        around = np.angle(np.exp(1j * (longitude - origin[1])))
-        return np.stack([EARTH_M * (latitude - origin[0]), EARTH_M * np.cos(origin[0]) * around], axis=1)
+        around = np.angle(np.exp(1j * (longitude - zero[1])))
+        return np.stack([EARTH_M * (latitude - zero[0]), EARTH_M * np.cos(zero[0]) * around], axis=1)
     if role == "gnss.climb" and names[0] in ("down", "z"):
         return -value
     if role == "depth":
         return -value
     if role == "barometer" and names[0] == "pressure":
         # international standard atmosphere: h = 44330 (1 - (p / p0)^0.1903), p0 the first pressure
-        return np.asarray(44_330.0 * (1 - np.maximum(value / np.median(value[:5]), 1e-3) ** 0.190263))
+        return np.asarray(44_330.0 * (1 - np.maximum(value / zero[0], 1e-3) ** 0.190263))
     if role == "wheel" and value.shape[1] > 1:
         return np.asarray(value.mean(axis=1, keepdims=True))
     return value

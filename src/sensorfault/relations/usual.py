@@ -7,6 +7,7 @@ from sensorfault.relations.grid import STEP_S
 from sensorfault.relations.limits import BLOCK_S, RATE_WINDOWS_S, span_s, usual_rate
 from sensorfault.relations.tests_of import Piece
 
+SIZE = round(BLOCK_S / STEP_S)  # ticks of a block
 FIRST_BLOCKS = 2  # what these show holds for them, too
 NEAR = 0.5  # of the usual rates: how far those of a drive may lie from those of the fit
 EVERY = 5  # a median of every fifth tick is as good
@@ -23,9 +24,13 @@ class Usual:
         self._known = known
         self._seen: dict[str, list[Float[np.ndarray, " n"]]] = {}
 
-    def changes(self, piece: Piece) -> Float[np.ndarray, "T K"]:
-        """Those of the next piece; a fault that begins later changes none of them."""
+    def changes(self, piece: Piece, known: Float[np.ndarray, "t K"] | None = None) -> Float[np.ndarray, "T K"]:
+        """Those of the next piece; a fault that begins later changes none of them.
+
+        `known`: those of its first ticks, which came before; only what follows their last full block is found anew.
+        """
         rates = {}
+        done = 0 if known is None else len(known) // SIZE * SIZE
         for name in dict.fromkeys(test.relation.name for test in piece.tests):
             mine = [k for k, test in enumerate(piece.tests) if test.relation.name == name]
             shown = [
@@ -33,20 +38,23 @@ class Usual:
             ]
             if shown:
                 rate = np.stack([piece.moved[:, k] / span_s(piece.tests[k]) for k in shown], axis=1)
-                rates[name] = self._rates(name, rate, usual_rate(piece.tests[shown[0]]))
-        none = np.zeros(len(piece.grid.time))
+                rates[name] = self._rates(name, rate, usual_rate(piece.tests[shown[0]]), done)
+        none = np.zeros(len(piece.grid.time) - done)
         columns = [rates.get(test.relation.name, none) * span_s(test) for test in piece.tests]
-        return np.reshape(columns, (len(columns), len(none))).T
+        later = np.reshape(columns, (len(columns), len(none))).T
+        return later if known is None else np.concatenate([known[:done], later])
 
-    def _rates(self, name: str, rate: Float[np.ndarray, "T m"], most: float) -> Float[np.ndarray, " T"]:
-        """The usual rate at each tick: the median of all before its block, within what is usual for such sensors."""
-        size = round(BLOCK_S / STEP_S)
+    def _rates(self, name: str, rate: Float[np.ndarray, "T m"], most: float, done: int) -> Float[np.ndarray, " t"]:
+        """The usual rate at each tick: the median of all before its block, within what is usual for such sensors.
+
+        `done`: ticks that are not asked for.
+        """
         seen = self._seen.setdefault(name, [])
-        first = FIRST_BLOCKS * size if not seen else 0
-        found = np.empty(len(rate))
-        for start in range(0, len(rate), size):
+        first = FIRST_BLOCKS * SIZE if not seen else 0
+        found = np.empty(len(rate) - done)
+        for start in range(done, len(rate), SIZE):
             before = [*seen, rate[: max(start, first) : EVERY].ravel()]
-            found[start : start + size] = self._usual(name, np.concatenate(before), most)
+            found[start - done : start - done + SIZE] = self._usual(name, np.concatenate(before), most)
         seen.append(rate[::EVERY].ravel())
         return found
 

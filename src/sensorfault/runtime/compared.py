@@ -218,7 +218,7 @@ def _joined(first: Log, second: Log) -> Log:
 def _detection(log: Log, judged: Judged) -> Detection:
     sensors = [sensor.name for sensor in log.sensors]
     coverage = _coverage(log, judged)
-    tested = tested_sensors(log, judged, sensors)
+    tested = tested_sensors(log.time, judged, sensors)
     events = events_of(judged, float(log.time[-1]))
     sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
     sample = np.where(tested.any(axis=1), OK, UNKNOWN).astype(np.int8)
@@ -272,26 +272,26 @@ def _coverage(log: Log, judged: Judged) -> Coverage:
     return Coverage(compared, reasons, tuple(name for name in reasons if name in checked))
 
 
-def tested_sensors(log: Log, judged: Judged, sensors: list[str]) -> Bool[np.ndarray, "T S"]:
+def tested_sensors(time: Float[np.ndarray, " T"], judged: Judged, sensors: list[str]) -> Bool[np.ndarray, "T S"]:
     """Rows at which some comparison of a sensor had something to compare."""
-    tested = np.zeros((len(log), len(sensors)), bool)
+    tested = np.zeros((len(time), len(sensors)), bool)
     for piece, score in zip(judged.pieces, judged.scores, strict=True):
         if not piece.tests:
             continue
-        tick = np.searchsorted(piece.grid.time, log.time - EXACT_S)
-        inside = (log.time >= piece.grid.start_s) & (log.time <= piece.grid.end_s)
+        tick = np.searchsorted(piece.grid.time, time - EXACT_S)
+        inside = (time >= piece.grid.start_s) & (time <= piece.grid.end_s)
         tick = np.clip(tick, 0, len(piece.grid.time) - 1)
+        there = np.isfinite(score)
+        devices = [dict.fromkeys(device for (device, _), _ in test.relation.blame) for test in piece.tests]
+        of = {device: sensor_of(device, judged.signals) for mine in devices for device in mine}
         for i, sensor in enumerate(sensors):
-            mine = [
-                any(sensor_of(device, judged.signals) == sensor for (device, _), _ in test.relation.blame)
-                for test in piece.tests
-            ]
+            mine = [any(of[device] == sensor for device in one) for one in devices]
             if any(mine):
-                tested[:, i] |= inside & np.isfinite(score[:, mine]).any(axis=1)[tick]
+                tested[:, i] |= inside & there[:, mine].any(axis=1)[tick]
     for signal in judged.signals.values():
         if signal.role == RANGE_ROLE and signal.sensor in sensors:  # held against all other satellites at each epoch
-            last = np.searchsorted(signal.time, log.time + EXACT_S) - 1
-            since = log.time - signal.time[np.maximum(last, 0)]
+            last = np.searchsorted(signal.time, time + EXACT_S) - 1
+            since = time - signal.time[np.maximum(last, 0)]
             tested[:, sensors.index(signal.sensor)] |= (last >= 0) & (since < 1.5 * signal.period_s)
     return tested
 

@@ -9,10 +9,10 @@ from sensorfault.core.verdicts import FAULT, OK, UNKNOWN
 from sensorfault.events.event import Event
 from sensorfault.logs.table import Log
 from sensorfault.relations.events import events_of
-from sensorfault.relations.judge import Judged, judge
+from sensorfault.relations.judge import Judged
+from sensorfault.relations.running import KEPT_S, Running
 from sensorfault.runtime.compared import Comparison, tested_sensors
 
-KEPT_S = 80.0  # the longest window, and what comes before it
 EVERY_S = 1.0
 
 
@@ -24,6 +24,7 @@ class ComparingLive:
     """
 
     def __init__(self, comparison: Comparison) -> None:
+        assert comparison.learned is not None
         self._comparison = comparison
         self._names = [sensor.name for sensor in comparison.sensors]
         self._owner = np.array([self._names.index(channel.sensor) for channel in comparison.channels])
@@ -33,6 +34,8 @@ class ComparingLive:
         self._value: Float[np.ndarray, "N C"] = np.empty((1024, width))
         self._fresh: Bool[np.ndarray, "N C"] = np.empty((1024, width), bool)
         self._compared_s = -np.inf
+        self._new = 0  # the first row that was not compared yet
+        self._running = Running(comparison.learned)
         self._going: list[Event] = []
         self.sensor: Int8[np.ndarray, " S"] = np.full(len(self._names), UNKNOWN, np.int8)
         self.sample = UNKNOWN
@@ -67,10 +70,22 @@ class ComparingLive:
             new[: self._rows - first] = old[first : self._rows]
             setattr(self, name, new)
         self._rows -= first
+        self._new -= first
 
     def _compare(self) -> list[Event]:
-        rows = slice(int(np.searchsorted(self._time[: self._rows], self._compared_s - KEPT_S)), self._rows)
-        log = Log(
+        judged = self._running.more(self._log(self._new))
+        if judged is None:
+            first = int(np.searchsorted(self._time[: self._rows], self._compared_s - KEPT_S))
+            judged = self._running.whole(self._log(first))
+        self._new = self._rows
+        found = events_of(judged, self._compared_s)
+        self._set_verdicts(judged, [event for event in found if event.end_s is None])
+        return self._update(list(found))
+
+    def _log(self, first: int) -> Log:
+        """The rows from the first on."""
+        rows = slice(first, self._rows)
+        return Log(
             self._time[rows].copy(),
             self._value[rows].copy(),
             self._fresh[rows] & np.isfinite(self._value[rows]),
@@ -78,13 +93,9 @@ class ComparingLive:
             self._comparison.sensors,
             "live",
         )
-        judged = judge(log, self._comparison.learned)
-        found = events_of(judged, self._compared_s)
-        self._set_verdicts(log, judged, [event for event in found if event.end_s is None])
-        return self._update(list(found))
 
-    def _set_verdicts(self, log: Log, judged: Judged, going: list[Event]) -> None:
-        tested = tested_sensors(log, judged, self._names)[-1]
+    def _set_verdicts(self, judged: Judged, going: list[Event]) -> None:
+        tested = tested_sensors(np.array([self._compared_s]), judged, self._names)[0]
         self.sensor = np.where(tested, OK, UNKNOWN).astype(np.int8)
         for event in going:
             if event.sensor in self._names:

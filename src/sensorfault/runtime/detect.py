@@ -130,14 +130,15 @@ class Live:
         if not isinstance(time, int | float | np.number):
             raise wrong(time, "live: time", "the time of the sample, in seconds")
         if fresh is not None:
-            fresh = np.broadcast_to(np.asarray(fresh, bool), len(row))
+            fresh = np.asarray(fresh, bool)
+            fresh = fresh if fresh.shape == row.shape else np.broadcast_to(fresh, len(row))
         time = self._clock.take(float(time))
         if fresh is None:
             fresh = self._fresh if not self._held else self._changed(row)
         before, self._time = self._time, time
         gap_s = 0.0 if before is None else self._time - before
         if self._comparing is not None:
-            return self._compare(self._comparing, row, np.broadcast_to(fresh, len(row)))
+            return self._compare(self._comparing, row, fresh)
         if self._gather is None:
             return self._judge(self._time, gap_s, row, fresh)
         cut = self._gather.push(self._time, row, np.broadcast_to(fresh, len(row)))
@@ -153,7 +154,7 @@ class Live:
     ) -> StepResult:
         assert self._time is not None
         self.events += comparing.push(self._time, value, fresh)
-        channel, none = comparing.channel, np.full(0, np.nan)
+        channel, none = comparing.channel, np.empty(0)
         stand_in = np.where(channel == FAULT, np.nan, value)
         untested, silence = np.zeros(len(value), bool), np.zeros(len(value))
         residual = np.full(len(value), np.nan)

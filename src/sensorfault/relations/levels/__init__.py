@@ -10,5 +10,17 @@ from sensorfault.relations.levels.silence import silences as silences
 
 def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
     """All findings in a piece."""
-    for level in (inertial, bounds, ranges, repeats, ratios, spikes):
+    yield from soon(grid, vehicle)
+    yield from late(grid, vehicle)
+
+
+def soon(grid: Grid, vehicle: str) -> Iterator[Finding]:
+    """Those that some seconds show."""
+    for level in (inertial, bounds, ranges, spikes):
+        yield from level.findings(grid, vehicle)
+
+
+def late(grid: Grid, vehicle: str) -> Iterator[Finding]:
+    """Those that need a minute: what is usual, or a mean."""
+    for level in (repeats, ratios):
         yield from level.findings(grid, vehicle)

@@ -26,9 +26,11 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
 
 def _repeats(grid: Grid, signal: Signal) -> Iterator[Finding]:
     value, time = signal.value, signal.time
-    if len(value) < 20 or not np.ptp(value, axis=0).any():
+    if len(value) < 20:
         return
-    same = np.r_[False, (np.diff(value, axis=0) == 0).all(axis=1)]
+    same = np.r_[False, np.logical_and.reduce([x[1:] == x[:-1] for x in value.T])]
+    if same[1:].all():
+        return
     found = list(runs(np.arange(len(time), dtype=float), same, 1.0))
     if not found:
         return

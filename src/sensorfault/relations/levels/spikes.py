@@ -23,7 +23,7 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
         other = grid.signals.get(OTHER[signal.role] + signal.key.removeprefix(signal.role))
         if other is None or len(signal.time) < 50 or len(other.time) < 50:
             continue
-        score, partner, limit = _score(signal), _score(other), SPIKE[signal.role]
+        score, partner, limit = _kept(grid, signal), _kept(grid, other), SPIKE[signal.role]
         for first, last in runs(signal.time[1:-1], score > limit, 0.5):
             start_s, end_s = float(signal.time[first + 1]), float(signal.time[last + 1])
             near = (other.time[1:-1] > start_s - NEAR_S) & (other.time[1:-1] < end_s + NEAR_S)
@@ -32,17 +32,28 @@ def findings(grid: Grid, vehicle: str) -> Iterator[Finding]:
                 yield Finding(device_of(signal), start_s, end_s, TEST, peak, limit, "spike")
 
 
+def _kept(grid: Grid, signal: Signal) -> Float[np.ndarray, " m"]:
+    return grid.keep(f"alone {signal.key}", lambda: _score(signal))
+
+
 def _score(signal: Signal) -> Float[np.ndarray, " m"]:
     """How far each sample stands alone, on the side of both neighbours, over the usual step around it; largest axis."""
     step = np.diff(signal.time)
     close = (step[1:] < 3 * signal.period_s) & (step[:-1] < 3 * signal.period_s)
     size = max(round(BLOCK_S / signal.period_s), 20)
-    worst = np.zeros(len(signal.time) - 2)
-    for x in signal.value.T:
-        back, ahead = x[1:-1] - x[:-2], x[1:-1] - x[2:]
-        alone = np.where((back * ahead > 0) & close, np.minimum(np.abs(back), np.abs(ahead)), 0.0)
-        blocks = np.array_split(np.abs(back), max(len(back) // size, 1))
-        usual = np.array([np.quantile(block, 0.9) for block in blocks])
-        usual = np.maximum(usual, np.maximum(np.r_[usual[1:], 0.0], np.r_[0.0, usual[:-1]]))
-        worst = np.maximum(worst, alone / np.maximum(np.repeat(usual, [len(block) for block in blocks]), 1e-12))
-    return worst
+    x = np.ascontiguousarray(signal.value.T)
+    back, ahead = x[:, 1:-1] - x[:, :-2], x[:, 1:-1] - x[:, 2:]
+    alone = np.where((back * ahead > 0) & close, np.minimum(np.abs(back), np.abs(ahead)), 0.0)
+    return np.asarray((alone / np.maximum(_usual(np.abs(back), size), 1e-12)).max(axis=0))
+
+
+def _usual(step: Float[np.ndarray, "k m"], size: int) -> Float[np.ndarray, "k m"]:
+    """What nine of ten steps do not exceed in blocks of about `size`, the largest of a block and its neighbours."""
+    blocks = max(step.shape[1] // size, 1)
+    short, longer = divmod(step.shape[1], blocks)
+    cut = longer * (short + 1)
+    parts = step[:, :cut].reshape(len(step), longer, short + 1), step[:, cut:].reshape(len(step), -1, short)
+    usual = np.concatenate([np.quantile(part, 0.9, axis=2) for part in parts if part.size], axis=1)
+    around = np.pad(usual, ((0, 0), (1, 1)))
+    usual = np.maximum(usual, np.maximum(around[:, 2:], around[:, :-2]))
+    return np.repeat(usual, [short + 1] * longer + [short] * (blocks - longer), axis=1)

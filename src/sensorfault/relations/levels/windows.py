@@ -2,6 +2,7 @@
 
 import numpy as np
 from jaxtyping import Float
+from numpy.lib.stride_tricks import sliding_window_view
 
 
 def windows(
@@ -19,9 +20,15 @@ def windows(
 
 def median_of_last(x: np.ndarray, count: int) -> np.ndarray:
     """Median of the last `count`; 0 before there are so many."""
-    return np.array([np.median(x[max(0, i - count + 1) : i + 1]) if i >= count - 1 else 0.0 for i in range(len(x))])
+    if len(x) < count:
+        return np.zeros(len(x))
+    return np.concatenate([np.zeros(count - 1), np.median(sliding_window_view(x, count), axis=1)])
 
 
 def median_around(x: np.ndarray, half: int) -> np.ndarray:
     """Median of each with `half` neighbours on each side."""
-    return np.array([np.median(x[max(0, i - half) : i + half + 1]) for i in range(len(x))])
+    wide = 2 * half + 1
+    if len(x) < wide:
+        return np.array([np.median(x[max(0, i - half) : i + half + 1]) for i in range(len(x))])
+    first, last = ([np.median(ends[: half + 1 + i]) for i in range(half)] for ends in (x, x[::-1]))
+    return np.concatenate([first, np.median(sliding_window_view(x, wide), axis=1), last[::-1]])
