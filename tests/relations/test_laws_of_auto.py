@@ -138,12 +138,14 @@ def test_stream_equals_replay(vehicle: Vehicle) -> None:
 def test_parts_one_after_the_other_name_the_same(vehicle: Vehicle) -> None:
     log = vehicle.lied(first_lie(vehicle), vehicle.lies[first_lie(vehicle)])
     parts = ComparingDetector(vehicle.model)
-    middle = float(log.time[len(log) // 2])
+    middle = sum(vehicle.lie_s) / 2
     for rows in (log.time < middle, log.time >= middle):
         parts.take(replace(log, time=log.time[rows], value=log.value[rows], fresh=log.fresh[rows]))
     found = parts.found()
     assert named(found) == named(troubled(vehicle))
-    assert found.events[0].start_s == pytest.approx(troubled(vehicle).events[0].start_s, abs=2.0)
+    for one, other in zip(found.events, troubled(vehicle).events, strict=True):
+        assert one.start_s == pytest.approx(other.start_s, abs=3.0)
+        assert one.end_s == other.end_s or one.end_s == pytest.approx(other.end_s, abs=3.0)
 
 
 @every_vehicle
@@ -192,7 +194,7 @@ def test_rows_without_a_measurement_change_nothing(vehicle: Vehicle) -> None:
     between = (log.time[:-1] + log.time[1:]) / 2
     time = np.concatenate([log.time, between])
     order = np.argsort(time, kind="stable")
-    nothing = np.full((len(between), len(log.channels)), np.nan)
+    nothing = log.value[:-1] + 1.0  # whatever stands there: it is not new
     more = replace(
         log,
         time=time[order],

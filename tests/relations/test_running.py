@@ -20,12 +20,13 @@ def between(log: Log, start_s: float, end_s: float) -> Log:
 
 
 def lied(vehicle: Vehicle) -> Log:
-    """One sensor lies from the hundredth second on, another was silent before."""
-    path, size = next(iter(vehicle.lies.items()))
+    """One sensor is silent, then one lies for some seconds, then another one for good."""
+    *_, (first, little), (second, much) = vehicle.lies.items()
     log = vehicle.log
     value = log.value.copy()
-    value[log.time > 100.0, log.index(path)] += size
-    silent = (log.time > 86.0) & (log.time < 95.0)
+    value[(log.time > 97.0) & (log.time < 100.0), log.index(first)] += little
+    value[log.time > 113.0, log.index(second)] += much
+    silent = (log.time > 82.0) & (log.time < 91.0)
     value[np.ix_(silent, list(log.of("accelerometer")))] = np.nan
     return replace(log, value=value, fresh=log.fresh & np.isfinite(value))
 
@@ -53,8 +54,8 @@ def test_what_goes_on_is_judged_as_the_whole(vehicle: Vehicle) -> None:
 
 
 def named(judged, last_s: float) -> set[tuple[str | None, str]]:
-    """Who is accused now, and of what."""
-    return {(event.sensor, event.kind) for event in events_of(judged, last_s) if event.end_s is None}
+    """Who is accused, and of what."""
+    return {(event.sensor, event.kind) for event in events_of(judged, last_s)}
 
 
 def test_after_a_pause_the_whole_is_asked_for() -> None:
