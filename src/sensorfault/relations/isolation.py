@@ -112,7 +112,7 @@ class _Seen(_Group):
 
     size: Float[np.ndarray, "n g"]
     z: Float[np.ndarray, "n g"]
-    large: list[tuple[Bool[np.ndarray, " g"], Int[np.ndarray, " m"]]]
+    large: list[tuple[Bool[np.ndarray, " g"], Int[np.ndarray, " _"]]]
     plain: Float[np.ndarray, " n"]
 
 

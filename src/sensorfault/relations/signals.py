@@ -238,7 +238,7 @@ def _zero(role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"]) ->
 
 def _convention(
     role: str, names: tuple[str, ...], value: Float[np.ndarray, "n k"], zero: tuple[float, ...]
-) -> Float[np.ndarray, "n k"]:
+) -> Float[np.ndarray, "n _"]:
     """Local metres for degrees, up for down, altitude for pressure, one speed for several wheels."""
     if role == "gnss.position":
         latitude, longitude = value.T
