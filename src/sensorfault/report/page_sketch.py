@@ -57,9 +57,13 @@ class Sketch:
 
     @property
     def lanes(self) -> list[tuple[str, Lane]]:
-        """The verdicts on each sensor; on the whole row, where no sensor could be isolated; on the motion."""
+        """The verdicts on each sensor; on the whole row, where no sensor could be isolated; on the motion.
+
+        What is at fault comes first, what was never judged last.
+        """
         shown = {UNKNOWN_WHICH: self._unattributed, MOTION: self._motion}
-        return [(name, lane) for name, lane in self._lanes.items() if shown.get(name, True)]
+        lanes = [(name, lane) for name, lane in self._lanes.items() if shown.get(name, True)]
+        return sorted(lanes, key=lambda one: (FAULT not in one[1].verdict, set(one[1].verdict) <= {UNKNOWN}))
 
     def take(self, part: Detection, share: float = 1.0) -> None:
         """Add the next part, which is `share` of the log, and take its events, which are all so far."""
