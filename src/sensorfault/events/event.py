@@ -71,7 +71,7 @@ class Event:
 
     def __str__(self) -> str:
         end = "-ongoing" if self.end_s is None else f"-{clock(self.end_s)}" if self.end_s > self.start_s else ""
-        sizes = (("peak", self.peak_score), ("limit", self.limit))
+        sizes: tuple[tuple[str, float | None], ...] = (("peak", self.peak_score), ("limit", self.limit))
         unit = " s" if self.kind in ("missing", JUMP) else ""
         sizes = (("size", self.peak_score),) if self.kind == JUMP else sizes
         size = ", ".join(f"{name} {value:.3g}{unit}" for name, value in sizes if value is not None)

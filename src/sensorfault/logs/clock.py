@@ -73,8 +73,8 @@ def read_clock(source: Source, file: FileEntry) -> Clock:
     period, unsteady = _steadiness(source.name, kept)
     jumps = tuple(Jump(float(time[one.row]) - first, -one.back_s, column) for one in jumped)
     faulty = tuple(j for j, one in zip(jumps, jumped, strict=True) if not wraps(zero + float(read[one.row]), j.step_s))
-    said = [_said(source, one, jump) for one, jump in zip(jumped, jumps, strict=True)]
-    return Clock(zero + first, kept, rows, period, (*notes, *said, *even, *faults, *unsteady), faulty)
+    sentences = [_said(source, one, jump) for one, jump in zip(jumped, jumps, strict=True)]
+    return Clock(zero + first, kept, rows, period, (*notes, *sentences, *even, *faults, *unsteady), faulty)
 
 
 def _said(source: Source, step: Step, jump: Jump) -> str:

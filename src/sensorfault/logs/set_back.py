@@ -1,4 +1,7 @@
-"""Clocks that are set back by seconds and go on, told from late rows, rows twice and a second recording, which begins like the first."""
+"""Clocks that are set back by seconds and go on.
+
+Late rows, rows that come twice and a second recording, which begins like the first, look much the same.
+"""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -40,9 +43,9 @@ def _goes_on(time: Float[np.ndarray, " n"], steps: Float[np.ndarray, " m"], i: i
     again = np.flatnonzero(time[i + 1 :] > time[i])
     until = i + 1 + int(again[0]) if len(again) else len(time) - 1
     within = steps[i + 1 : until]
-    return bool((within >= 0).mean() > 0.95 and within.max() <= max(usual_s, -steps[i] / 4)) and (
-        not len(again) or bool(steps[until - 1] <= usual_s)
-    )
+    if (within >= 0).mean() <= 0.95 or within.max() > max(usual_s, -steps[i] / 4):
+        return False
+    return not len(again) or bool(steps[until - 1] <= usual_s)
 
 
 def _repeated(source: Source, rows: Int[np.ndarray, " n"], time: Float[np.ndarray, " n"], i: int) -> bool:
