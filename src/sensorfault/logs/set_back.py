@@ -45,7 +45,7 @@ def _goes_on(time: Float[np.ndarray, " n"], steps: Float[np.ndarray, " m"], i: i
     within = steps[i + 1 : until]
     if (within >= 0).mean() <= 0.95 or within.max() > max(usual_s, -steps[i] / 4):
         return False
-    return not len(again) or bool(steps[until - 1] <= usual_s)
+    return bool(not len(again) or steps[until - 1] <= usual_s)
 
 
 def _repeated(source: Source, rows: Int[np.ndarray, " n"], time: Float[np.ndarray, " n"], i: int) -> bool:
@@ -56,4 +56,4 @@ def _repeated(source: Source, rows: Int[np.ndarray, " n"], time: Float[np.ndarra
     if there.mean() < 0.5:
         return False
     one, other = source.frame[rows[after[there]]], source.frame[rows[before[there]]]
-    return sum(a == b for a, b in zip(one.rows(), other.rows(), strict=True)) > len(one) / 2
+    return bool(sum(a == b for a, b in zip(one.rows(), other.rows(), strict=True)) > len(one) / 2)
