@@ -210,6 +210,16 @@ def test_rows_without_a_measurement_change_nothing(vehicle: Vehicle) -> None:
     np.testing.assert_array_equal(found.sensor[np.argsort(order)[: len(log)]], troubled(vehicle).sensor)
 
 
+@every_vehicle
+def test_wherever_a_log_ends_the_last_verdict_stands(vehicle: Vehicle) -> None:
+    """The next measurement of a slow sensor may not be there yet."""
+    log = parted(vehicle.log, vehicle.log.time > 0.0)  # it begins between two measurements of slow sensors
+    whole = sf.detect(vehicle.model, log)
+    for end in range(len(log) * 3 // 4, len(log), len(log) // 23):
+        found = sf.detect(vehicle.model, parted(log, np.arange(len(log)) <= end))
+        np.testing.assert_array_equal(found.sensor[-1], whole.sensor[end])
+
+
 # 2. What is not there is unknown, and nobody else's fault.
 
 
