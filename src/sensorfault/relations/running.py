@@ -98,7 +98,7 @@ class Running:
             new = past.motion_of(recent, role) if role in recent else np.zeros(len(recent.time))
             moved = np.concatenate([past.motion_of(old, role)[:keep], new[keep - first :]])
             past.motion_of(grid, role, moved)
-        return compared(grid, tuple(_grown(pair, recent, first, keep) for pair in piece.pairs))
+        return compared(grid, tuple(_grown(pair, recent, first, keep) for pair in piece.pairs), piece, keep)
 
     def _found(self, old: Grid, recent: Grid, vehicle: str) -> list[Finding]:
         """What the levels find, and the offsets that they found before."""

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from sensorfault.relations import lag
 from sensorfault.relations.change import WINDOWS_2_S, WINDOWS_S, change
-from sensorfault.relations.grid import Grid, unwrapped, wrapped
+from sensorfault.relations.grid import STEP_S, Grid, unwrapped, wrapped
 from sensorfault.relations.table import Relation, residual, rows
 
 Numbers = Float[np.ndarray, " T"]
@@ -105,14 +105,15 @@ def paired(relation: Relation, windows_s: tuple[float, ...], lag_s: float, left:
     return Pair(relation, windows_s, lag_s, apart, left, right)
 
 
-def compared(grid: Grid, pairs: tuple[Pair, ...]) -> Piece:
-    """Each pair over each of its windows; all of one window at once."""
+def compared(grid: Grid, pairs: tuple[Pair, ...], known: Piece | None = None, keep: int = 0) -> Piece:
+    """Each pair over each of its windows; all of one window at once. What is `known` is kept up to tick `keep`."""
     tests = tuple(Test(pair.relation, window_s) for pair in pairs for window_s in pair.windows_s)
     of = np.repeat(np.arange(len(pairs)), [len(pair.windows_s) for pair in pairs])
-    moved, common = np.empty((2, len(grid.time), len(tests)))
+    begin = max(keep - round(max(WINDOWS_S) / STEP_S) - 1, 0)
+    moved, common = np.empty((2, len(grid.time) - begin, len(tests)))
     if tests:
         apart, left, right = (
-            np.stack([getattr(pair, name) for pair in pairs], axis=1) for name in ("apart", "left", "right")
+            np.stack([getattr(pair, name)[begin:] for pair in pairs], axis=1) for name in ("apart", "left", "right")
         )
     shape = [(test.window_s, test.relation.order) for test in tests]
     for window_s, order in dict.fromkeys(shape):
@@ -122,4 +123,7 @@ def compared(grid: Grid, pairs: tuple[Pair, ...]) -> Piece:
         common[:, mine] = np.minimum(*(np.abs(change(x[:, here], window_s, order)) for x in (left, right)))
     circular = [k for k, test in enumerate(tests) if test.relation.circular]
     moved[:, circular] = wrapped(moved[:, circular])
+    if known is not None:
+        moved = np.concatenate([known.moved[:keep], moved[keep - begin :]])
+        common = np.concatenate([known.common[:keep], common[keep - begin :]])
     return Piece(grid, tests, moved, common, pairs)

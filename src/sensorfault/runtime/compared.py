@@ -15,7 +15,7 @@ from sensorfault.logs.reading_notes import ReadingNotes
 from sensorfault.logs.table import SAID, Channel, Log, LogError, Sensor
 from sensorfault.logs.vehicle import VehicleFile
 from sensorfault.relations.events import METHOD, events_of, sensor_of
-from sensorfault.relations.grid import EXACT_S
+from sensorfault.relations.grid import EXACT_S, STEP_S
 from sensorfault.relations.judge import SHORTEST_S, Judged, fitted, judge
 from sensorfault.relations.limits import Learned
 from sensorfault.relations.signals import RANGE_ROLE, SATELLITES, Signal
@@ -26,6 +26,7 @@ from sensorfault.runtime.result import Detection, Trace
 
 NO_LEVELS = frozenset({"attitude", "gnss.course"})
 REASONS_SHOWN = 3
+HELD_S = 1.0
 OVERLAP_S = 70.0  # a part is judged with the end of the part before it, so that the longest window spans the seam
 
 
@@ -287,13 +288,21 @@ def tested_sensors(time: Float[np.ndarray, " T"], judged: Judged, sensors: list[
         for i, sensor in enumerate(sensors):
             mine = [any(of[device] == sensor for device in one) for one in devices]
             if any(mine):
-                tested[:, i] |= inside & there[:, mine].any(axis=1)[tick]
+                tested[:, i] |= inside & _held(there[:, mine].any(axis=1))[tick]
     for signal in judged.signals.values():
         if signal.role == RANGE_ROLE and signal.sensor in sensors:  # held against all other satellites at each epoch
             last = np.searchsorted(signal.time, time + EXACT_S) - 1
             since = time - signal.time[np.maximum(last, 0)]
             tested[:, sensors.index(signal.sensor)] |= (last >= 0) & (since < 1.5 * signal.period_s)
     return tested
+
+
+def _held(tested: Bool[np.ndarray, " T"]) -> Bool[np.ndarray, " T"]:
+    """A comparison stands for HELD_S: the next measurement of a slow sensor may not be there yet."""
+    held = tested.copy()
+    for later in range(1, round(HELD_S / STEP_S) + 1):
+        held[later:] |= tested[:-later]
+    return held
 
 
 def _traces(log: Log, judged: Judged) -> tuple[Trace, ...]:

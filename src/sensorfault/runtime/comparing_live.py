@@ -1,4 +1,4 @@
-"""The default method on a running vehicle: the last seconds are kept, and compared again every second."""
+"""The default method on a running vehicle: every second, what is new is compared."""
 
 from dataclasses import replace
 
