@@ -1,9 +1,7 @@
 """Which columns measure something, and what."""
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 import polars as pl
@@ -11,19 +9,16 @@ from jaxtyping import Float
 
 from sensorfault.logs.clock import Clock
 from sensorfault.logs.guess.dotted import are_dotted, device_of, meaning_of
+from sensorfault.logs.guess.nameless import by_gravity, is_nameless, placed
 from sensorfault.logs.guess.words import Meaning, read_name
 from sensorfault.logs.readers.source import Source
 from sensorfault.logs.table import LogError
-from sensorfault.logs.units import STANDARD_GRAVITY
 
 _FEW = 16
-_STEADY = 0.15  # relative spread below which three axes have a steady length
 
 
 OTHER_TIME = "another time, or bookkeeping of it"
 QUALITY = "quality or state, not a measurement of motion"
-_OF_LENGTH_1, _NEARLY_ALL = 0.01, 0.99
-_OF_A_DRIVE_DEG = 2.0  # so far a drive goes at most
 _SENSORS = ("gyroscope", "gyro", "accelerometer", "acceleration", "magnetometer")  # as the files of phones are called
 BEACON = frozenset({"range", "position", "depth"})  # what a beacon tells of itself
 
@@ -46,14 +41,14 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
     """
     columns, left_out = [], []
     dotted = are_dotted(source.frame.columns)
-    pose = pose_of(source, time) or fix_of(source, time)
+    places = placed(source, time)
     for name in source.frame.columns:
         if name == time:
             continue
         device = device_of(name) if dotted else ""
         own = source.units.get(name, "")
         meaning = meaning_of(name) if device else read_name(name, own, source.frame.columns)
-        meaning = pose.get(name) or _by_file(meaning, source) or meaning
+        meaning = places.get(name) or _by_file(meaning, source) or meaning
         if meaning.kind == "time":
             left_out.append((name, OTHER_TIME))
         elif meaning.kind == "quality":
@@ -73,8 +68,13 @@ def measurements(source: Source, time: str | None, clock: Clock) -> tuple[list[C
                 left_out.append((name, reason))
             else:
                 columns.append(column)
-    headerless = bool(columns) and not pose and all(re.fullmatch(r"c\d+", column.name) for column in columns)
-    return _by_value(columns) if headerless else columns, left_out
+    if not places and is_nameless([column.name for column in columns]):
+        kinds = by_gravity(np.column_stack([column.value for column in columns]))
+        columns = [
+            replace(column, meaning=Meaning(kind, axis, "", "")) if kind else column
+            for column, (kind, axis) in zip(columns, kinds, strict=True)
+        ]
+    return columns, left_out
 
 
 def _by_file(meaning: Meaning, source: Source) -> Meaning | None:
@@ -87,39 +87,6 @@ def _by_file(meaning: Meaning, source: Source) -> Meaning | None:
             found = read_name(f"{sensor}_{meaning.axis}", meaning.unit)
             return replace(found, stem="") if found.axis == meaning.axis else None
     return None
-
-
-def pose_of(source: Source, time: str | None) -> dict[str, Meaning]:
-    """The columns of a table without names that are a position and a quaternion, of length 1: a TUM trajectory."""
-    names = [name for name in source.frame.columns if name != time]
-    if len(names) != 7 or not all(re.fullmatch(r"c\d+", name) for name in names):
-        return {}
-    try:
-        value = np.column_stack([source.column(name).cast(pl.Float64).to_numpy() for name in names[3:]])
-    except LogError:
-        return {}
-    length = np.linalg.norm(value, axis=1)
-    if not (np.abs(length[np.isfinite(length)] - 1) < _OF_LENGTH_1).mean() > _NEARLY_ALL:
-        return {}
-    kinds = [("local_position", axis) for axis in "xyz"] + [("quaternion", axis) for axis in "xyzw"]
-    return {name: Meaning(kind, axis, "", "") for name, (kind, axis) in zip(names, kinds, strict=True)}
-
-
-def fix_of(source: Source, time: str | None) -> dict[str, Meaning]:
-    """Two neighbours without names in a table called after a receiver that are a latitude and a longitude."""
-    names = [name for name in source.frame.columns if name != time]
-    called = re.search(r"(^|[^a-z])(gps|gnss)([^a-z]|$)", f"{source.table or ''} {source.path.stem}", re.IGNORECASE)
-    if called is None or not all(re.fullmatch(r"c\d+", name) for name in names):
-        return {}
-    for one, other in pairwise(names):
-        cells = [source.frame[name].cast(pl.Float64, strict=False).drop_nulls() for name in (one, other)]
-        if all(
-            len(cell) > 1 and most >= cell.abs().max() > 0 and cell.max() - cell.min() < _OF_A_DRIVE_DEG  # type: ignore[operator]
-            and not (cell == cell.round(3)).all()
-            for cell, most in zip(cells, (90.0, 180.0), strict=True)
-        ):  # fmt: skip
-            return {name: Meaning("position", axis, "", "") for name, axis in ((one, "latitude"), (other, "longitude"))}
-    return {}
 
 
 def beacons_of(meanings: Iterable[Meaning]) -> set[str]:
@@ -147,28 +114,3 @@ def _no_measurement(column: Column) -> str:
         if (np.diff(known) >= 0).all():
             return "only increases: a counter"
     return ""
-
-
-def _by_value(columns: list[Column]) -> list[Column]:
-    """Columns without names: three neighbours whose length is gravity are an accelerometer, the next three a gyro."""
-    left, named, gyro_due = list(columns), [], False
-    while left:
-        triple = left[:3]
-        if len(triple) == 3 and _is_gravity(triple):
-            kind, gyro_due = "accelerometer", True
-        elif len(triple) == 3 and (gyro_due or (len(left) >= 6 and _is_gravity(left[3:6]))):
-            kind, gyro_due = "gyro", False
-        else:
-            named.append(left.pop(0))
-            continue
-        named += [replace(c, meaning=Meaning(kind, axis, "", "")) for c, axis in zip(triple, "xyz", strict=True)]
-        left = left[3:]
-    return named
-
-
-def _is_gravity(triple: list[Column]) -> bool:
-    """Whether the usual length of three columns is 1 g, 9.8 m/s^2 or 1000 mg, and steady."""
-    length = np.linalg.norm(np.column_stack([column.value for column in triple]), axis=1)
-    middle = float(np.nanmedian(length))
-    steady = float(np.nanmedian(np.abs(length - middle))) < _STEADY * middle
-    return steady and any(0.8 < middle / gravity < 1.25 for gravity in (1.0, STANDARD_GRAVITY, 1000.0))
