@@ -63,7 +63,7 @@ def _are_degrees(value: Float[np.ndarray, " T"], most: float) -> bool:
 
 
 def by_gravity(value: Float[np.ndarray, "T C"]) -> list[tuple[str, str]]:
-    """Kind and axis of each column: an accelerometer is three neighbours of the length of gravity, a gyro the next three.
+    """Kind and axis of each column: three neighbours as long as gravity are an accelerometer, the next three a gyro.
 
     A column that is neither has no kind.
     """
