@@ -1,5 +1,6 @@
 """The handful of methods that users choose among by name."""
 
+import gzip
 import json
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from cli.conftest import Run
 from relations import drives
 from sensorfault import fit
 from sensorfault.logs import Log, LogError, read
+from sensorfault.logs.readers import gzipped
 from sensorfault.methods.catalog import METHODS, recipe
 from sensorfault.runtime.compared import Comparison
 from sensorfault.runtime.names import CHANNELS, VEHICLES
@@ -74,3 +76,14 @@ def test_imu_and_arm_are_recipes(car: Path) -> None:
     assert isinstance(log, Log)
     assert np.isfinite(log.value).any()
     assert fit(log, "imu", held_out=0.0).method == "relative-conditioning"
+
+
+def test_how_large_a_packed_log_may_be(run: Run, car: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gzipped, "most", gzipped.Most())
+    packed = car.with_suffix(".csv.gz")
+    packed.write_bytes(gzip.compress(car.read_bytes()))
+    refused = run("detect", packed, "--max-size", "10kB")
+    assert refused.code == 2
+    assert "larger than 1e-05 GB" in refused.err
+    assert run("detect", packed, "--max-size", "1 GB").code == 0
+    assert "is no size" in run("detect", packed, "--max-size", "much").err

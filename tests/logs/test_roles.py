@@ -1,5 +1,6 @@
 """What columns are by their names, their neighbours' and their file's; and files that lie in folders."""
 
+import gzip
 import zipfile
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from scipy.io import savemat
 
 from logs import written_bus
 from sensorfault.logs import Log, LogError, read
+from sensorfault.logs.readers import gzipped
 from sensorfault.logs.units import spelled, to_si
 
 N = 200
@@ -200,6 +202,23 @@ def test_one_file_in_a_zip(tmp_path: Path) -> None:
     (tmp_path / "odd.zip").write_bytes((tmp_path / "one.zip").read_bytes()[:200])
     with pytest.raises(LogError):
         read(tmp_path / "odd.zip")
+
+
+@pytest.mark.parametrize("suffix", [".gz", ".zip"])
+def test_no_more_is_unpacked_than_may_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str) -> None:
+    file = table(tmp_path / "flight.csv", ax=noise(), ay=noise(), az=9.8 + noise(0.1))
+    packed = tmp_path / f"flight.csv{suffix}"
+    if suffix == ".gz":
+        packed.write_bytes(gzip.compress(file.read_bytes()))
+    else:
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.write(file, "flight.csv")
+    monkeypatch.setattr(gzipped, "most", gzipped.Most(5000))
+    with pytest.raises(LogError, match=r"larger than 5e-06 GB.* allow more with --max-size"):
+        read(packed)
+    monkeypatch.setattr(gzipped, "most", gzipped.Most())
+    assert gzipped.most.bytes > 10**8
+    assert len(read(packed)) == N
 
 
 def test_matrices_in_a_mat_file(tmp_path: Path) -> None:

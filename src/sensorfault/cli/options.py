@@ -1,11 +1,40 @@
 """Arguments and options of several verbs."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import click
 
-log_argument = click.argument("log", type=click.Path(path_type=Path))
+_SIZE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([kMGT]?)B?\s*", re.IGNORECASE)
+_BYTES = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "t": 10**12}
+
+
+def _may_unpack(context: click.Context, option: click.Parameter, size: str | None) -> None:
+    """Allow packed logs of this size."""
+    if size is None:
+        return
+    match = _SIZE.fullmatch(size)
+    if match is None:
+        raise click.BadParameter(f"'{size}' is no size; give one as 20GB or 500MB.")
+    from sensorfault.logs.readers.gzipped import most
+
+    most.size = round(float(match[1]) * _BYTES[match[2].lower()])
+
+
+def log_argument(command: Callable[..., None]) -> Callable[..., None]:
+    """The log, and how large it may be if it is packed."""
+    argument = click.argument("log", type=click.Path(path_type=Path))
+    max_size = click.option(
+        "--max-size",
+        metavar="SIZE",
+        expose_value=False,
+        callback=_may_unpack,
+        help="How large a packed log may be unpacked, as 20GB.  [default: this machine's memory]",
+    )
+    return argument(max_size(command))
+
+
 vehicle_option = click.option(
     "--vehicle",
     type=click.Path(path_type=Path),

@@ -1,11 +1,12 @@
 """Files packed by gzip, or alone in a zip: unpacked to a temporary folder and read as their own format."""
 
+import os
 import re
 import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
 
@@ -14,8 +15,33 @@ from sensorfault.logs.table import LogError
 
 SUFFIX, ZIP = ".gz", ".zip"
 _CHUNK = 1 << 16
+_UNKNOWN_MEMORY = 8 * 10**9
 _EXTRA = re.compile(r"__MACOSX/|.*\.DS_Store$")  # what a system adds by itself
 _GZIP = 31  # zlib's number for 32 kB of window and gzip's own head and tail
+
+
+class TooLarge(Exception):
+    """What is packed is larger than may be unpacked."""
+
+
+@dataclass
+class Most:
+    """How many bytes may be unpacked of one file; None: as many as this machine has memory."""
+
+    size: int | None = None
+
+    @property
+    def bytes(self) -> int:
+        """In bytes."""
+        if self.size is not None:
+            return self.size
+        try:
+            return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+        except (AttributeError, OSError, ValueError):
+            return _UNKNOWN_MEMORY
+
+
+most = Most()
 
 
 def is_packed(path: Path) -> bool:
@@ -63,7 +89,13 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
     with tempfile.TemporaryDirectory(prefix="sensorfault-") as folder:
         file = Path(folder) / inner(path).name
         with file.open("wb") as plain:
-            whole = _unpack(path, plain)
+            try:
+                whole = _unpack(path, plain)
+            except TooLarge:
+                raise LogError(
+                    f"{path}: unpacked it is larger than {most.bytes / 1e9:.3g} GB, the most that may be unpacked here; "
+                    "unpack it yourself, or allow more with --max-size."
+                ) from None
             if not plain.tell():
                 raise LogError(f"{path}: this file cannot be unpacked; pack the log again.")
             if not whole:
@@ -81,13 +113,13 @@ def _of_packed(source: Source, path: Path) -> Source:
     return replace(source, path=path) if source.lines is None else replace(source, path=path, lines=None, first_line=0)
 
 
-def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:
-    """Unpack as far as it goes, or until `most` bytes; whether all of it is sound.
+def _unpack(path: Path, plain: BufferedIOBase, head: int | None = None) -> bool:
+    """Unpack as far as it goes, or until `head` bytes; whether all of it is sound.
 
     Python's own gzip gives nothing of the block in which the damage is.
     """
     if path.suffix.lower() == ZIP:
-        return _unzip(path, plain, most)
+        return _unzip(path, plain, head)
     with path.open("rb") as packed:
         unpacker = zlib.decompressobj(_GZIP)
         while chunk := packed.read(_CHUNK):
@@ -101,20 +133,24 @@ def _unpack(path: Path, plain: BufferedIOBase, most: int | None = None) -> bool:
                 chunk = unpacker.unused_data if unpacker.eof else b""
                 if chunk:  # another file is packed behind it
                     unpacker = zlib.decompressobj(_GZIP)
-            if most is not None and plain.tell() >= most:
+            if head is not None and plain.tell() >= head:
                 return True
+            if plain.tell() > most.bytes:
+                raise TooLarge
         return unpacker.eof
 
 
-def _unzip(path: Path, plain: BufferedIOBase, most: int | None) -> bool:
+def _unzip(path: Path, plain: BufferedIOBase, head: int | None) -> bool:
     name = _alone(path)
     assert name is not None
     try:
         with zipfile.ZipFile(path) as packed, packed.open(name) as file:
             while chunk := file.read(_CHUNK):
                 plain.write(chunk)
-                if most is not None and plain.tell() >= most:
+                if head is not None and plain.tell() >= head:
                     break
+                if plain.tell() > most.bytes:
+                    raise TooLarge
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError):  # damaged, or encrypted
         return False
     return True
