@@ -284,3 +284,10 @@ def test_a_fix_without_names(tmp_path: Path) -> None:
     rows = np.column_stack([TIME, 51.98 + 1e-6 * np.arange(N), 5.66 + 2e-6 * np.arange(N), 174_035 + noise()])
     path.write_text("".join(",".join(f"{x:.9f}" for x in row) + "\n" for row in rows))
     assert {"latitude", "longitude"} <= {channel.name for channel in read(path).channels}
+
+
+def test_a_folder_of_very_many_files_is_no_drive(tmp_path: Path) -> None:
+    for i in range(2001):
+        (tmp_path / f"{i}.csv").touch()
+    with pytest.raises(LogError, match="2,001 of its files may be logs"):
+        read(tmp_path)

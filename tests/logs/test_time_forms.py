@@ -198,3 +198,13 @@ def test_a_rate_that_is_none(tmp_path: Path, rate: float, said: str) -> None:
 def test_a_rate_beside_a_clock_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="its clock is the column 'time'; leave out the rate"):
         read(put(tmp_path, "time,ax", times(clock)), rate_hz=10.0)
+
+
+@pytest.mark.parametrize(("zero", "unit"), [(116_444_736_000_000_000, "filetime"), (0, "unix100ns")])
+def test_ticks_of_100_ns(tmp_path: Path, zero: int, unit: str) -> None:
+    path = tmp_path / "log.csv"
+    ticks = zero + 17_145_576_000_000_000 + 200_000 * np.arange(400)
+    path.write_text("timestamp,ax\n" + "".join(f"{t},{k % 7}.5\n" for k, t in enumerate(ticks)))
+    log = read(path)
+    assert log.time[-1] == pytest.approx(399 * 0.02)
+    assert guess(path).files[0].unit == unit

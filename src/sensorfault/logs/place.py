@@ -1,5 +1,6 @@
 """Finds the files of a log, and the entry of the vehicle file that describes each."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,7 +27,7 @@ def files_of(path: Where) -> list[Path]:
     elif Path(path).is_dir():
         from sensorfault.logs.readers.formats import format_of  # lazily: the readers need polars
 
-        inside = [file for file in Path(path).iterdir() if file.is_file()] + laid_out(Path(path))
+        inside = _like_logs(Path(path)) + laid_out(Path(path))
         known = ((file, format_of(file)) for file in inside)
         files = sorted({form.leader(file) for file, form in known if form is not None})
         if not files:
@@ -55,6 +56,22 @@ def entry_path(file: Path) -> str:
     return f"{file.parent.name}/{file.name}" if file.name in ALIKE else file.name
 
 
+def _like_logs(folder: Path) -> list[Path]:
+    """The files in a folder whose names are those of logs.
+
+    Raises:
+        LogError: there are more than one drive has.
+    """
+    from sensorfault.logs.readers.registry import pattern
+
+    like_a_log = pattern().fullmatch
+    with os.scandir(folder) as entries:
+        named = [entry for entry in entries if like_a_log(entry.name.lower())]
+    if len(named) > _MOST_FILES:
+        raise LogError(f"{folder}: {len(named):,} of its files may be logs; name a folder or the files of one drive.")
+    return [folder / entry.name for entry in named if entry.is_file()]
+
+
 ALIKE = frozenset({"data.csv", "value"})  # names that say nothing: the folder's does
 
 
@@ -71,6 +88,7 @@ def _drives_in(folder: Path) -> str:
 
 
 _LOOKED, _SHOWN = 100, 8  # folders
+_MOST_FILES = 2000  # of one drive
 
 
 def shown(path: Path) -> str:

@@ -2,7 +2,8 @@
 
 PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "min": 1 / 60, "h": 1 / 3600}
 DAY_ZERO = {"excel": 25_569, "datenum": 719_529}  # what days since 1900, or since the year 0, count at 1970
-TICK_ZERO = {"filetime": 116_444_736_000_000_000, "ticks": 621_355_968_000_000_000}  # what 100 ns count at 1970
+# What 100 ns count at 1970: of Windows, of .NET, and of those that begin there.
+TICK_ZERO = {"filetime": 116_444_736_000_000_000, "ticks": 621_355_968_000_000_000, "unix100ns": 0}
 TICKS_PER_SECOND = 10_000_000
 JOINED = {
     "s+ms": ("s", "ms"),

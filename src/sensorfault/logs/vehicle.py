@@ -11,7 +11,7 @@ steering_ratio = 14.5      # optional: angle of the steering wheel over that of 
 path = "drive.csv"         # beside this file; may be left out if the log is one file
 time = "millis"            # columns of a headerless file are c1, c2, ...; may be left out for .pos
 unit = "ms"                # s ms us ns min h; iso8601; a format as "%d.%m.%Y %H:%M:%S%.f"; excel, datenum: days;
-                           # filetime, ticks: 100 ns of Windows and of .NET
+                           # filetime, ticks, unix100ns: 100 ns of Windows, of .NET, and since 1970
 # fine = "clock"           # a column that goes on where the first ends: the clock beside a date (unit: both formats
                            # with a blank between), or the rest of a time in s+ms, s+us, s+ns, week+s, week+ms
 # rate_hz = 100.0          # instead of time: rows a second of a file without a clock

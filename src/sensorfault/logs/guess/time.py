@@ -39,7 +39,7 @@ def guess_time(source: Source, rate_hz: float | None = None) -> FileEntry:
             return FileEntry(rate_hz=sound_rate(rate_hz), why="rows a second, as given")
         raise unread or LogError(
             f"{source.path}: there is no time column: no column is a clock by its name, its unit or its form; name one "
-            "in vehicle.toml."
+            "in vehicle.toml, or give --rate, the rows a second."
         )
     best = max(range(len(able)), key=lambda i: (*able[i].rank, -i))
     return able[best].file

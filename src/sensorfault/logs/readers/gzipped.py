@@ -93,7 +93,7 @@ def read_unpacked(path: Path, read: Callable[[Path], Tables]) -> Tables:
                 whole = _unpack(path, plain)
             except TooLarge:
                 raise LogError(
-                    f"{path}: unpacked it is larger than {most.bytes / 1e9:.3g} GB, the most that may be unpacked here; "
+                    f"{path}: unpacked it is larger than {most.bytes / 1e9:.3g} GB, the most that may be unpacked; "
                     "unpack it yourself, or allow more with --max-size."
                 ) from None
             if not plain.tell():

@@ -3,6 +3,8 @@
 Modules named `*_load` are not looked at: readers import them when they read, for the libraries that they need.
 """
 
+import re
+from fnmatch import translate
 from functools import cache
 from importlib import import_module
 from pkgutil import walk_packages
@@ -28,6 +30,13 @@ def registered() -> tuple[Format, ...]:
                 raise TypeError(f"two formats are called {form.title}")
             found[form.title] = form
     return tuple(sorted(found.values(), key=lambda form: (-form.priority, form.title.casefold())))
+
+
+@cache
+def pattern() -> re.Pattern[str]:
+    """What the names of logs look like, in lower case; packed ones, too."""
+    names = "|".join(translate(name).removesuffix(r"\Z") for form in registered() for name in form.names)
+    return re.compile(rf"(?:{names})(?:\.gz)?|.*\.zip")
 
 
 def suffixes() -> tuple[str, ...]:
