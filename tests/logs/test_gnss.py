@@ -94,6 +94,8 @@ def test_rinex_of_both_versions(tmp_path: Path, title: str) -> None:
         np.testing.assert_allclose(column(log, "G07.pseudorange_m"), 2.1e7 + np.arange(EPOCHS))
         np.testing.assert_allclose(column(log, "E30.cn0_dbhz"), 38.0)
     lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join([*lines, "\n", "  \n"]))
+    assert not read(path).damage
     path.write_text("".join(lines[:-1]))
     cut = read(path)
     assert len(cut) == EPOCHS - 1

@@ -123,6 +123,9 @@ def _epochs_3(lines: list[str], header: Header, damage: list[Damage]) -> Iterato
     at = header.lines
     while at < len(lines):
         head = lines[at]
+        if not head.strip():  # as at the end of many files
+            at += 1
+            continue
         try:
             if not head.startswith(">"):
                 raise ValueError("no epoch")
@@ -145,6 +148,9 @@ def _epochs_2(lines: list[str], header: Header, damage: list[Damage]) -> Iterato
     at, each = header.lines, -(-len(header.codes.get("", ())) // 5)
     while at < len(lines):
         head = lines[at]
+        if not head.strip():  # as at the end of many files
+            at += 1
+            continue
         try:
             flag, count = _flag_and_count(head[26:29], head[29:32])
             time = calendar_s(head[:26].split()) - GPS_EPOCH_S + header.behind_s if flag < 2 else 0.0
