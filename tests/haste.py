@@ -11,7 +11,7 @@ def optimised(on: bool) -> Iterator[None]:
     """Whether LLVM optimises what is compiled inside.
 
     A few hundred samples are run in less time than that takes. XLA's own passes, which regroup and fuse, run always;
-    the tests of runners, of the car and of real logs run what users run.
+    the tests of runners and of real logs run what users run.
     """
     jax.config.update("jax_disable_most_optimizations", not on)
     try:

@@ -16,6 +16,7 @@ from sensorfault.runtime.result import Detection
 from sensorfault.simulation.road import drive
 from sensorfault.training.session import Session
 
+pytestmark = pytest.mark.usefixtures("hasty")
 LEARN_S = 300.0
 UNDER_WAY = 365.0  # from here on the car drives for a while [s]
 METRE = 9.0e-6  # of latitude [deg]

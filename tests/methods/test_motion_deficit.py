@@ -17,6 +17,8 @@ from sensorfault.runtime.result import Detection
 from sensorfault.simulation.road import drive
 from sensorfault.vehicles.car import roles
 
+pytestmark = pytest.mark.usefixtures("hasty")
+
 PATHS = [*(f"{s}.{axis}" for s in ("gyro", "accelerometer") for axis in "xyz")]
 PATHS += [f"gnss.{name}" for name in ("latitude", "longitude", "speed", "course")]
 LATITUDE, LONGITUDE, SPEED, COURSE = 6, 7, 8, 9

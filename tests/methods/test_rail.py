@@ -16,6 +16,8 @@ from sensorfault.runtime.detect import detect
 from sensorfault.simulation.train import ride
 from sensorfault.training.session import Session
 
+pytestmark = pytest.mark.usefixtures("hasty")
+
 
 def small(log: Log) -> Log:
     """Pseudoranges alone, of a system that has ten satellites: less to compile."""
