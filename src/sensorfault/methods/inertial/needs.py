@@ -1,8 +1,11 @@
 """What the methods of this family need of a log. Each raises LogError if the log lacks it; nothing is fitted."""
 
 from dataclasses import replace
+from typing import Any
+from weakref import ref
 
 import numpy as np
+from jaxtyping import Bool
 
 from sensorfault.logs.rates import complete
 from sensorfault.logs.table import Log, LogError
@@ -10,6 +13,7 @@ from sensorfault.methods.common.rows import LEAST_ROWS, Training
 from sensorfault.training.blocks import blocks_of
 from sensorfault.training.unbroken import LAGS, unbroken
 
+_last: list[Any] = []  # the log by a weak reference, its complete rows, and which channels change
 OFTEN = 0.9  # share of the ticks with a value; a channel that is often late breaks the runs of consecutive rows
 
 
@@ -37,12 +41,7 @@ def _lasting(training: Training) -> Training:
     Raises:
         LogError: no channel is left.
     """
-    log, watched = training.log, training.watched.copy()
-    for block in blocks_of(len(log)):
-        others = training.rows.copy()
-        others[block] = False
-        if others.any():
-            watched &= np.ptp(log.value[others], axis=0) > 0
+    log, watched = training.log, training.watched & _changing(training)
     brief = [
         channel.path for channel, was, now in zip(log.channels, training.watched, watched, strict=True) if was > now
     ]
@@ -52,3 +51,18 @@ def _lasting(training: Training) -> Training:
         raise LogError(f"{log.name} has no channel that changes in more than one stretch of it; give it more data.")
     reasons = training.reasons | dict.fromkeys(brief, "changes in one stretch of the training data only")
     return replace(training, watched=watched, rows=complete(log, watched), reasons=reasons)
+
+
+def _changing(training: Training) -> Bool[np.ndarray, " C"]:
+    """Channels that change outside each block. Several methods ask the same of one log: the last answer is kept."""
+    log = training.log
+    if _last and _last[0]() is log and np.array_equal(_last[1], training.rows):
+        return np.asarray(_last[2])
+    parts = [log.value[block][training.rows[block]] for block in blocks_of(len(log))]
+    parts = [part for part in parts if len(part)]
+    least, most = (np.array([extreme(part, axis=0) for part in parts]) for extreme in (np.min, np.max))
+    found = np.ones(len(log.channels), bool)
+    for i in range(len(parts) if len(parts) > 1 else 0):
+        found &= np.delete(most, i, 0).max(axis=0) > np.delete(least, i, 0).min(axis=0)
+    _last[:] = [ref(log), training.rows, found]
+    return found
