@@ -19,7 +19,7 @@ MORE, RATIO = 0.05, 1.6  # the next explanation must cost this much more for a n
 
 @dataclass(frozen=True)
 class Named:
-    """The answer: `device`, or None if the candidates cannot be told apart; their costs, cheapest first."""
+    """The answer: `device`, or None if several explain it alike; their costs, cheapest first."""
 
     device: str | None
     candidates: tuple[tuple[str, float], ...]

@@ -83,7 +83,7 @@ def of_healthy(pieces: list[Piece], vehicle: str, lags: dict[str, float], facts:
     """Limits from healthy driving: the largest change of each test times one factor for its family.
 
     The factor is by how much a block left out, with its neighbours, exceeds the largest change of all others. So one
-    lively family does not make the others deaf.
+    lively family does not widen the limits of the others.
     """
     by_test = _by_test(pieces)
     rates = _rates(by_test)

@@ -63,7 +63,7 @@ class Running:
         return judged
 
     def more(self, rows: Log) -> Judged | None:
-        """Judge what follows. None if that cannot be told from these rows alone: then give the whole."""
+        """Judge what follows. None if these rows alone do not show it: then give the whole."""
         last, end_s = self._last, float(rows.time[-1])
         if last is None or end_s - self._whole_s > AGAIN_S:
             return None

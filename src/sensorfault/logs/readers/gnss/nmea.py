@@ -29,11 +29,11 @@ def read_nmea(path: Path, ask: Ask) -> Tables:
     Raises:
         LogError: no sentence GGA or RMC in it that can be read.
     """
-    heard, spoilt = _sentences(path, ask)
-    first = next((day for _, day, found in heard if day is not None), None)
+    sentences, spoilt = _sentences(path, ask)
+    first = next((day for _, day, found in sentences if day is not None), None)
     rows: dict[float, dict[str, float]] = {}
     day, last, fixed = first or _NO_DATE, 0.0, False
-    for at, dated, found in heard:
+    for at, dated, found in sentences:
         fixed |= bool(found)
         if not fixed:
             continue  # before its first fix a receiver does not know the time
@@ -51,11 +51,8 @@ def read_nmea(path: Path, ask: Ask) -> Tables:
         damage.append(Damage(what, f"line {spoilt[0]}", "all the others were read"))
     times = list(rows)
     table = {name: np.array([rows[moment].get(name, np.nan) for moment in times]) for name in _NAMES}
-    notes = (
-        ()
-        if first is not None
-        else (f"{path.name}: there is no RMC sentence with a date; the time counts from midnight.",)
-    )
+    undated = f"{path.name}: there is no RMC sentence with a date; the time counts from midnight."
+    notes = (undated,) if first is None else ()
     return with_notes({"": gnss_table(path, {"time": np.array(times), **table})}, notes, damage)
 
 
@@ -66,7 +63,7 @@ def _sentences(path: Path, ask: Ask) -> tuple[list[_Sentence], list[int]]:
     """
     from pynmeagps import NMEAReader  # lazily: only this format needs it
 
-    heard: list[_Sentence] = []
+    sentences: list[_Sentence] = []
     spoilt: list[int] = []
     lines = path.read_bytes().splitlines()
     for number, line in enumerate(lines, 1):
@@ -83,8 +80,8 @@ def _sentences(path: Path, ask: Ask) -> tuple[list[_Sentence], list[int]]:
             continue
         day = getattr(message, "date", None) if found else None
         if isinstance(message.time, time):
-            heard.append((message.time, day if isinstance(day, date) else None, found))
-    return heard, spoilt
+            sentences.append((message.time, day if isinstance(day, date) else None, found))
+    return sentences, spoilt
 
 
 def _values(message: Any) -> dict[str, float]:
