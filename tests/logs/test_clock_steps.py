@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sensorfault.logs import Log, VehicleFile, read
+from logs import written_ulog
+from sensorfault.logs import Log, LogError, VehicleFile, read
 
 VEHICLE = '[file.log]\ntime = "t"\nunit = "{unit}"\n[sensor.s.channel]\na = {{ column = "a" }}\n'
 
@@ -71,3 +72,56 @@ def test_one_or_two_wrong_readings_are_no_jump(tmp_path: Path) -> None:
 def test_a_recorder_that_was_off_for_days_is_no_jump(tmp_path: Path) -> None:
     times = [1.7e9 + k + (3.3 * 86_400 if k >= 50 else 0) for k in range(100)]
     assert np.diff(log_of(tmp_path, [f"{time:.1f}" for time in times]).time).max() > 3 * 86_400
+
+
+def table(shown: np.ndarray) -> list[str]:
+    return [f"{time:.3f}" for time in shown]
+
+
+@pytest.mark.parametrize("back", [2.0, 5.0, 30.0])
+def test_a_clock_set_back_by_seconds_is_continued(tmp_path: Path, back: float) -> None:
+    steady = 1.72e9 + np.arange(4000) * 0.05
+    log = log_of(tmp_path, table(np.where(np.arange(4000) < 3000, steady, steady - back)))
+    np.testing.assert_allclose(log.time, steady - steady[0], atol=1e-5)
+    (jump,) = log.jumps
+    assert (jump.time_s, jump.step_s) == (pytest.approx(150.0, abs=1e-5), pytest.approx(-back, abs=1e-5))
+    assert f"back by {back:g} s at line 3002" in jumps(log)[0]
+
+
+def test_rows_that_come_late_are_no_clock_that_is_set(tmp_path: Path) -> None:
+    late = np.r_[0:1000, 1100:1150, 1000:1100, 1150:2000]
+    twice = np.r_[0:1000, 900:2000]
+    for rows, kept in ((late, 1950), (twice, 2000)):
+        path = tmp_path / "log.csv"
+        path.write_text("t,a\n" + "".join(f"{0.05 * k:.2f},{float(np.sin(k))!r}\n" for k in rows.tolist()))
+        log = read(path, VehicleFile.parse(VEHICLE.format(unit="s")))
+        assert (len(log), log.jumps) == (kept, ())
+
+
+def test_a_table_of_two_sensors_in_turns_is_no_clock_that_is_set(tmp_path: Path) -> None:
+    turns = np.concatenate([np.tile(np.arange(20 * k, 20 * k + 20), 2) for k in range(20)]) * 0.05
+    with pytest.raises(LogError, match="out of order"):
+        log_of(tmp_path, table(turns))
+
+
+def test_the_end_of_a_week_is_no_fault_of_the_clock(tmp_path: Path) -> None:
+    steady = 604_790.0 + np.arange(400) * 0.05
+    log = log_of(tmp_path, table(steady % 604_800))
+    assert log.duration_s == pytest.approx(19.95)
+    assert log.jumps == ()
+    assert len(log_of(tmp_path, table(np.where(np.arange(400) < 200, steady, steady - 604_800) + 1.7e9)).jumps) == 1
+
+
+def test_the_clock_of_all_topics_jumps_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a ULog each topic has the clock in its rows."""
+    plain = written_ulog.data
+
+    def moved(topic: str, instance: int, us: int, *values: float) -> bytes:
+        return plain(topic, instance, us - (5_000_000 if us > 40_000_000 else 0), *values)
+
+    monkeypatch.setattr(written_ulog, "data", moved)
+    (tmp_path / "flight.ulg").write_bytes(written_ulog.flight(60.0))
+    log = read(tmp_path / "flight.ulg")
+    assert log.duration_s == pytest.approx(59.98, abs=0.05)
+    (jump,) = log.jumps
+    assert jump.step_s == pytest.approx(-5.0, abs=1e-6)

@@ -13,7 +13,7 @@ from sensorfault.runtime.detect import Live
 from sensorfault.runtime.live_clock import FOLLOWED_AFTER_S, LiveClock
 
 
-@pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf, 1e308, 1.7e18])
 def test_a_time_that_is_none_changes_nothing(time: float) -> None:
     clock = LiveClock()
     for taken in (1.0, 2.0):
@@ -36,6 +36,29 @@ def test_a_clock_that_was_set_back_is_followed() -> None:
         break
     assert refused == pytest.approx(FOLLOWED_AFTER_S / 0.1, abs=2)
     assert clock.take(8.0) > rising
+
+
+def test_a_clock_that_was_set_far_ahead_is_followed_after_a_while() -> None:
+    clock = LiveClock()
+    clock.take(10.0)
+    refused = 0
+    for i in range(100):
+        try:
+            assert clock.take(1e9 + 0.1 * i) == 1e9 + 0.1 * i
+        except ValueError:
+            refused += 1
+            continue
+        break
+    assert refused == pytest.approx(FOLLOWED_AFTER_S / 0.1, abs=2)
+
+
+def test_one_reading_far_ahead_costs_one_sample() -> None:
+    clock = LiveClock()
+    clock.take(10.0)
+    for wild in (1e9, 5e9):
+        with pytest.raises(ValueError, match="in order"):
+            clock.take(wild)
+    assert clock.take(10.1) == 10.1
 
 
 def test_one_late_sample_is_dropped() -> None:

@@ -108,8 +108,9 @@ class Live:
         """Judge one sample.
 
         Args:
-            time: [s], greater than that of the sample before. A clock that was set back is followed once it has risen
-                for 2 s; those samples are dropped, and times of events go on from the last one before.
+            time: [s], greater than that of the sample before. A clock that was set back, or ahead by more than an
+                hour, is followed once it has risen for 2 s; those samples are dropped. After a step back, times of
+                events go on from the last one before.
             value: one for each of `model.inputs`, in their order, in SI units; NaN if absent.
             fresh: which values are new measurements, one for all or one each. By default a held sensor's values are new
                 if one of its channels has changed, and all others are new.
@@ -119,8 +120,8 @@ class Live:
             the model judges epochs and this sample ends none, those on the last epoch.
 
         Raises:
-            ValueError: time is not finite or did not rise, or there are not as many values as the model has inputs.
-                The sample is dropped, and nothing has changed.
+            ValueError: time is not finite, did not rise or is far ahead, or there are not as many values as the
+                model has inputs. The sample is dropped, and nothing has changed.
             TypeError: the time is no number, or the values are not numbers.
         """
         row = _row(value)
