@@ -207,3 +207,16 @@ def test_a_receiver_that_has_not_begun_is_unknown_not_frozen() -> None:
     assert named(found) == set()
     late = drives.changed(drives.car(seed=3), "gnss.latitude", 100.0, 160.0, lambda t, x: np.full_like(x, x[0]))
     assert named(compare(late, fitted_car())) == {"gnss"}
+
+
+def test_an_acceleration_without_gravity_is_no_accelerometer() -> None:
+    log = copter()
+    value = log.value.copy()
+    columns = list(log.of("accelerometer"))
+    value[:, columns] -= np.median(value[:, columns], axis=0)
+    found = compare(Log(log.time, value, log.fresh, log.channels, log.sensors))
+    assert named(found) == set()
+    assert found.coverage is not None
+    assert "accelerometer" in found.coverage.not_compared
+    value[:, columns] = 0.0
+    assert "accelerometer" in named(compare(Log(log.time, value, log.fresh, log.channels, log.sensors)))

@@ -52,6 +52,7 @@ _ESTIMATE = re.compile(
 )
 _BEGIN, BEGINS_S = re.compile(r"gnss|heading|attitude"), 10.0  # these repeat a value until they know where they are
 REPEATS, REPEATS_S = 8, 3.0
+LEAST_FORCE = 2.0  # [m/s^2]: what is usually less holds no gravity
 _INERTIAL = frozenset({"gyro", "accelerometer", "yaw_rate"})
 SELDOM_S = 0.25  # an inertial sensor with longer steps was logged as samples, between which anything may happen
 _BAROMETER = re.compile(r"(?<!differential_)(?<!raw_)(?<!filtered_)baro|pressure_height|air_data|static")
@@ -184,6 +185,8 @@ def _add(found: dict[str, Signal], log: Log, sensor: str, role: str, columns: tu
     names = tuple(log.channels[i].name for i in mine)
     zero = _zero(role, names, value)
     value = _convention(role, names, value, zero)
+    if role == "accelerometer" and _without_gravity(value):
+        return
     time = log.time[new]
     if _BEGIN.match(role):
         begun = _begun(time, value)
@@ -211,6 +214,12 @@ def _measured(log: Log, sensor: str, role: str, columns: tuple[int, ...]) -> Boo
     mine = list(columns)
     new = log.fresh[:, mine].any(axis=1) & (np.abs(log.value[:, mine]) < ABSURD).all(axis=1)
     return np.asarray(new & _has_fix(log, sensor) if role.startswith("gnss.") else new)
+
+
+def _without_gravity(value: Float[np.ndarray, "n k"]) -> bool:
+    """Whether gravity was taken off an accelerometer: then it shows no vertical. One that is dead is kept."""
+    length = np.linalg.norm(value, axis=1)
+    return bool(np.median(length) < LEAST_FORCE and np.median(np.abs(np.diff(length))) > 0)
 
 
 def _begun(time: Float[np.ndarray, " n"], value: Float[np.ndarray, "n k"]) -> int:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from zipfile import is_zipfile
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from sensorfault.core.extras import sentence_of_missing
 from sensorfault.logs.readers.attitude import with_attitude
 from sensorfault.logs.readers.autopilot_columns import with_columns
 from sensorfault.logs.readers.format import Format
-from sensorfault.logs.readers.gzipped import head_of, is_packed, read_unpacked
+from sensorfault.logs.readers.gzipped import ZIP, head_of, is_packed, read_unpacked
 from sensorfault.logs.readers.registry import registered, suffixes
 from sensorfault.logs.readers.source import ALL, Ask, Source, Tables
 from sensorfault.logs.table import LogError
@@ -43,6 +44,8 @@ def known_format(path: Path) -> Format:
     form = format_of(path)
     if form is not None:
         return form
+    if path.suffix.lower() == ZIP and not is_zipfile(path):
+        raise LogError(f"{path}: this zip is damaged, or none; pack the log again.")
     if path.name.lower().endswith(_ARCHIVES):
         raise LogError(
             f"{path}: this is an archive of several files; unpack it, and name a log in it or a drive's folder."
