@@ -110,6 +110,9 @@ def test_the_angles_of_an_attitude_have_one_unit(tmp_path: Path) -> None:
     angles = {"roll": 2 + noise(1.0), "pitch": noise(1.0), "yaw": 100 + noise(1.0)}
     log = read(table(tmp_path / "log.csv", **angles))
     assert kinds(log) == {f"attitude.{name}": "deg" for name in angles}
+    place = {"latitude": 52 + 1e-5 * TIME, "longitude": 13 + 1e-5 * TIME, "altitude": 700 + noise(1.0)}
+    log = read(table(tmp_path / "gnss.csv", **place, course=1 + noise(0.1)))
+    assert kinds(log)["gnss.course"] == "rad"  # what else its receiver says are no angles
 
 
 def test_a_receiver_without_a_position_is_one_all_the_same(tmp_path: Path) -> None:
